@@ -1,0 +1,39 @@
+"""Drape a woven composite ply over a mould.
+
+Conventions, once: mm and degrees at every surface; u along the warp, v along the weft, both arc lengths
+in the flat fabric from the origin; shear = 90° − angle(warp, weft), positive where +u and +v close.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "DrapeError": "errors",
+    "GeomdrapError": "errors",
+    "SurfaceError": "errors",
+    "Surface": "surface",
+    "read_surface": "surface",
+    "shapes": "surface",
+    "trace": "geodesic",
+    "Fabric": "fishnet",
+    "Net": "fishnet",
+    "drape": "fishnet",
+    "evaluate": "fields",
+}
+
+__all__ = ["__version__", *sorted(_HOMES)]
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name when it is first used, so that ``import geomdrap`` stays instant."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'geomdrap' has no attribute {name!r}")
+    return getattr(import_module(f"geomdrap.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -1,0 +1,41 @@
+"""The command line: a file per command, imported when that command runs."""
+
+from __future__ import annotations
+
+import click
+
+from geomdrap import __version__
+from geomdrap.cli.lazy import LazyGroup
+
+COMMANDS = {
+    "drape": "Drape a part: net, shear map, flat pattern, statistics.",
+    "check": "Say whether a mesh is fit for draping, and what is wrong with it.",
+    "diff": "Say what changed between two results (for golden files in CI).",
+    "sample": "Write a sample part.",
+}
+
+
+@click.group(
+    cls=LazyGroup,
+    package=__name__,
+    summaries=COMMANDS,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
+@click.version_option(__version__, "--version", message="geomdrap %(version)s")
+def cli() -> None:
+    """Drape a woven composite ply over a mould.
+
+    Lengths are in mm, angles in degrees. Results go to stdout and to files, messages to stderr.
+
+    \b
+    Examples:
+      geomdrap sample hemisphere
+      geomdrap drape hemisphere.stl --angle 45 -o result
+      geomdrap drape --help
+
+    \b
+    Exit codes:
+      0  done
+      1  done but incomplete (drape --strict), or a change was found (diff)
+      2  bad input or usage
+    """

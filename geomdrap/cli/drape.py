@@ -1,0 +1,114 @@
+"""``geomdrap drape``: a part in, net, maps, flat pattern and statistics out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.core import ParameterSource
+
+from geomdrap.cli.options import (
+    cloth_options,
+    folder_option,
+    json_option,
+    outputs_option,
+    part_argument,
+    quiet_option,
+    reading_options,
+    seed_options,
+)
+
+if TYPE_CHECKING:
+    from geomdrap.cli.progress import Progress
+    from geomdrap.fields import Drape
+
+
+@click.command()
+@part_argument
+@seed_options
+@cloth_options
+@reading_options
+@folder_option("drape", "Folder for the result files; it is made if it is missing.")
+@outputs_option
+@click.option("--strict", is_flag=True, help="Exit with code 1 if less than 99.5 % of the part is covered.")
+@json_option
+@quiet_option
+def drape(
+    folder: Path, outputs: tuple[str, ...], strict: bool, as_json: bool, quiet: bool, **asked: Any
+) -> int:
+    """Drape PART: net, shear map, flat pattern, statistics.
+
+    PART is a mesh (STL, OBJ, PLY, OFF, GLB, VTU, Gmsh, Abaqus, Nastran) or, with the cad extra, STEP or
+    IGES. All result files are written at the end, together: a run that fails leaves earlier ones untouched.
+
+    \b
+    Examples:
+      geomdrap drape hood.stl
+      geomdrap drape hood.stl --origin -5,5,84.4 --angle 45 --pitch 4 -o hood-45
+      geomdrap drape hood.stl --origin vertex:120 --blank 800x600 --outputs json,dxf --json
+    """
+    from geomdrap.cli.messages import print_json, say
+    from geomdrap.cli.progress import Progress, announce_compilation
+    from geomdrap.cli.summary import summary
+    from geomdrap.export.outputs import write_all
+    from geomdrap.export.report_json import as_dict, is_incomplete
+
+    _check_folder(folder, outputs)
+    announce_compilation(quiet)
+    with Progress(quiet) as progress:
+        result = compute(progress, **asked)
+        progress.step("Writing")
+        files = write_all(result, folder, outputs, progress.share)
+    say(result.net.warnings, (*result.net.notes, *_left_over(folder, files)), quiet)
+    if as_json:
+        print_json(as_dict(result, files))
+    elif not quiet:
+        click.echo(summary(result, files))
+    return int(strict and is_incomplete(result))
+
+
+def _check_folder(folder: Path, outputs: tuple[str, ...]) -> None:
+    """Refuse, before anything is computed, a folder that cannot be written or that nothing would go to."""
+    from geomdrap.export.whole import check_writable
+
+    if outputs:
+        check_writable(folder)
+    elif click.get_current_context().get_parameter_source("folder") == ParameterSource.COMMANDLINE:
+        raise click.UsageError(
+            "-o names a folder, but --outputs none writes no files", click.get_current_context()
+        )
+
+
+def _left_over(folder: Path, files: Mapping[str, Path]) -> Iterator[str]:
+    """Warn of a folder that holds files of two runs."""
+    from geomdrap.export.outputs import left_over
+
+    names = left_over(folder, files.values()) if files else []
+    if names:
+        yield f"{', '.join(names)} in {folder} {'is' if len(names) == 1 else 'are'} of an earlier run"
+
+
+def compute(
+    progress: Progress,
+    *,
+    part: Path,
+    unit: str,
+    tolerance: float | None,
+    flip: bool,
+    blank: tuple[float, float] | None,
+    limit_angle: float | None,
+    **drape_options: Any,
+) -> Drape:
+    """Read, drape and evaluate; ``drape_options`` go to `geomdrap.drape` as they are."""
+    import geomdrap as gd
+
+    progress.step("Reading")
+    surface = gd.read_surface(part, unit=unit, tolerance=tolerance, flip=flip)
+    progress.step("Draping")
+    reach = (blank[0] / 2, blank[1] / 2) if blank else None
+    net = gd.drape(surface, reach=reach, **drape_options)
+    progress.step("Evaluating")
+    result: Drape = gd.evaluate(net, limit_angle)
+    return result

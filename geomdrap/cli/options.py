@@ -1,0 +1,143 @@
+"""Options that commands share, as decorators."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from geomdrap.cli.values import Direction, Names, Number, Origin, Size
+
+OUTPUTS = ("json", "csv", "vtu", "png", "dxf", "svg")  # the keys of export.outputs.OUTPUTS; a test compares
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def _path(**more: Any) -> click.Path:
+    return click.Path(path_type=Path, **more)
+
+
+def part_argument(function: F) -> F:
+    """Add the argument PART, the mesh file."""
+    return click.argument("part", type=_path())(function)
+
+
+def reading_options(function: F) -> F:
+    """Add how the part's file is read: --unit, --tolerance, --flip."""
+    for option in (
+        click.option("--flip", is_flag=True, help="Turn the part's normal: the ply lies on the other side."),
+        click.option(
+            "--tolerance",
+            type=Number("MM", above=0.0),
+            help="Chord error of the tessellation of STEP and IGES parts.  [default: from the part's size]",
+        ),
+        click.option(
+            "--unit",
+            type=click.Choice(["mm", "cm", "m", "in"]),
+            default="mm",
+            show_default=True,
+            help="Unit of the numbers in the part's file; everything else stays in mm.",
+        ),
+    ):
+        function = option(function)
+    return function
+
+
+def seed_options(function: F) -> F:
+    """Add where and how the ply starts: --origin, --angle, --reference, --project."""
+    for option in (
+        click.option(
+            "--project",
+            is_flag=True,
+            help="Let --origin x,y,z lie further from the part than one pitch: the nearest point is taken.",
+        ),
+        click.option(
+            "--reference",
+            type=Direction(),
+            metavar="x,y,z",
+            help="Direction from which --angle counts.  [default: +x, or +y where x is along the normal]",
+        ),
+        click.option(
+            "--angle",
+            type=Number("DEG"),
+            default=0.0,
+            show_default="0",
+            help="Heading of the warp at the origin, counter-clockwise about the normal.",
+        ),
+        click.option(
+            "--origin",
+            type=Origin(),
+            metavar="centroid|x,y,z|vertex:N",
+            default="centroid",
+            show_default=True,
+            help="Where the ply touches first: the area centroid, a point in mm, or a vertex of the file "
+            "(counted from 0).",
+        ),
+    ):
+        function = option(function)
+    return function
+
+
+def cloth_options(function: F) -> F:
+    """Add the fabric's numbers: --pitch, --blank, --limit-angle."""
+    for option in (
+        click.option(
+            "--limit-angle",
+            type=Number("DEG", above=0.0, below=90.0),
+            help="Shear beyond which maps turn red and statistics count it.  [default: the fabric's]",
+        ),
+        click.option(
+            "--blank",
+            type=Size(),
+            metavar="WxH",
+            help="Size of the blank in mm, along warp times along weft, its middle on the origin.  "
+            "[default: as large as the part needs]",
+        ),
+        click.option(
+            "--pitch",
+            type=Number("MM", above=0.0),
+            help="Side of a cell of the net, mm.  [default: from the part's size, and said]",
+        ),
+    ):
+        function = option(function)
+    return function
+
+
+def folder_option(default: str | None, text: str) -> Callable[[F], F]:
+    """Add -o/--output DIR."""
+    return click.option(
+        "-o",
+        "--output",
+        "folder",
+        metavar="DIR",
+        type=_path(),
+        default=default and Path(default),
+        show_default=default is not None,
+        help=text,
+    )
+
+
+def outputs_option(function: F) -> F:
+    """Add --outputs, the list of result files."""
+    return click.option(
+        "--outputs",
+        type=Names(OUTPUTS),
+        metavar="name,name,...",
+        default=",".join(OUTPUTS),
+        show_default=True,
+        help="Which result files to write; none writes none.",
+    )(function)
+
+
+def json_option(function: F) -> F:
+    """Add --json."""
+    return click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")(function)
+
+
+def quiet_option(function: F) -> F:
+    """Add --quiet."""
+    return click.option(
+        "--quiet", "-q", is_flag=True, help="No summary, notes or progress; warnings and errors stay."
+    )(function)

@@ -1,0 +1,95 @@
+"""Progress on stderr: only on a terminal, and only for steps that take over a second."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from pathlib import Path
+from types import TracebackType
+
+import click
+
+PATIENCE = 1.0  # s before a step is worth mentioning
+_REDRAW = 0.1
+_WIDTH = 30
+
+
+class Progress:
+    """Steps of a run, shown as ``Draping [#####.....] 50 %`` once they take over a second."""
+
+    def __init__(self, quiet: bool = False):
+        self.enabled = not quiet and sys.stderr.isatty()
+        self._name = ""
+        self._start = self._drawn_at = 0.0
+        self._timer: threading.Timer | None = None
+        self._drawn = False
+
+    def __enter__(self) -> Progress:
+        """Start."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Take the line away, also after an error."""
+        self._end_step()
+
+    def step(self, name: str) -> None:
+        """Begin the step ``name``; the one before it is over."""
+        self._end_step()
+        if not self.enabled:
+            return
+        self._name = name
+        self._start = time.monotonic()
+        self._timer = threading.Timer(PATIENCE, self._draw, (f"{name} ...",))
+        self._timer.daemon = True
+        self._timer.start()
+
+    def share(self, done: float) -> None:
+        """Take the share of the step that is done, 0 to 1. Cheap enough to be called often."""
+        if not self.enabled:
+            return
+        now = time.monotonic()
+        if now - self._start < PATIENCE or now - self._drawn_at < _REDRAW:
+            return
+        self._drawn_at = now
+        filled = round(_WIDTH * min(max(done, 0.0), 1.0))
+        self._draw(f"{self._name} [{'#' * filled}{'.' * (_WIDTH - filled)}] {100 * done:3.0f} %")
+
+    def _draw(self, text: str) -> None:
+        self._drawn = True
+        sys.stderr.write(f"\r\x1b[K{text}")  # not click.echo: it drops control codes by its own rules
+        sys.stderr.flush()
+
+    def _end_step(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        if self._drawn:
+            self._draw("")
+            self._drawn = False
+
+
+def announce_compilation(quiet: bool) -> None:
+    """Say once, before the first run on a machine, why it takes longer."""
+    if not quiet and not kernels_are_compiled():
+        click.echo("Note: compiling the kernels for this machine, which takes a minute, once", err=True)
+
+
+def kernels_are_compiled() -> bool:
+    """Tell whether numba's cache holds the kernels of the net for this Python; needs no numba itself."""
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+        return True
+    pattern = f"*.py{sys.version_info.major}{sys.version_info.minor}.nbi"
+    return any(any(folder.glob(pattern)) for folder in _cache_folders())
+
+
+def _cache_folders() -> list[Path]:
+    """Give the folders where numba keeps what it compiled of the net: the one chosen, or its own two."""
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    if chosen:
+        return list(Path(chosen).glob("fishnet_*"))
+    user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "numba"
+    return [Path(__file__).parent.parent / "fishnet" / "__pycache__", *user.glob("fishnet_*")]

@@ -1,0 +1,73 @@
+"""The readable summary of a drape."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from geomdrap.fields import Drape
+
+_MOST_BARE = 8  # regions listed one by one
+
+
+def summary(result: Drape, files: Mapping[str, Path]) -> str:
+    """Give the summary as text: a labelled line per fact, in mm, mm² and degrees."""
+    return "\n".join(f"{label:<11}{text}".rstrip() for label, text in _lines(result, files))
+
+
+def _lines(result: Drape, files: Mapping[str, Path]) -> Iterator[tuple[str, str]]:
+    net, area, shear = result.net, result.area, result.statistics
+    size = " x ".join(f"{length:.4g}" for length in net.surface.bounds[1] - net.surface.bounds[0])
+    nodes = int((net.points[..., 0] == net.points[..., 0]).sum())
+    yield "part", f"{net.surface.source}, {len(net.surface.triangles):,} facets, {size} mm"
+    yield "seed", f"{_point(net.origin)}, warp at {net.angle:g}°"
+    yield "net", f"pitch {net.pitch:g} mm, {nodes:,} nodes, {int(net.cell_valid.sum()):,} cells"
+    yield "shear", f"max {shear.max:.2f}°, 95 % below {shear.p95:.2f}°, mean {shear.mean:.2f}°"
+    yield (
+        "",
+        f"{_percent(shear.over_half_limit)} over {result.limit_angle / 2:g}°, "
+        f"{_percent(shear.over_limit)} over the limit angle {result.limit_angle:g}°",
+    )
+    yield "area", f"part {_area(area.part)}, draped {_area(area.draped)}, fabric {_area(area.fabric)}"
+    yield "coverage", _percent(area.coverage)
+    yield from _bare(result)
+    yield "checks", ", ".join(_checks(result))
+    if files:
+        yield "files", f"{next(iter(files.values())).parent}: {', '.join(f.name for f in files.values())}"
+
+
+def _checks(result: Drape) -> Iterator[str]:
+    """Name the checks that could be made on this part."""
+    checks = result.checks
+    for what, size in (
+        ("edges off by", f"{checks.edge_error:.1g} mm"),
+        ("nodes off the surface by", f"{checks.off_surface:.1g} mm"),
+        ("shear off the curvature by", f"{checks.curvature_residual:.2g}°"),
+    ):
+        if not size.startswith("nan"):
+            yield f"{what} {size}"
+
+
+def _bare(result: Drape) -> Iterator[tuple[str, str]]:
+    regions = sorted(result.bare, key=lambda region: -region.area)
+    for number, region in enumerate(regions[:_MOST_BARE]):
+        label = "bare" if number == 0 else ""
+        yield label, f"{_area(region.area)} at {_point(region.center)}: {region.reason}"
+    rest = regions[_MOST_BARE:]
+    if rest:
+        yield "", f"{_area(sum(region.area for region in rest))} in {len(rest)} smaller regions"
+
+
+def _point(point: Iterable[float]) -> str:
+    return "(" + ", ".join(f"{round(float(x), 2) + 0.0:.2f}" for x in point) + ")"
+
+
+def _area(square_mm: float) -> str:
+    """Give an area in the unit that reads best."""
+    return f"{square_mm / 1e6:.4f} m²" if square_mm >= 1e5 else f"{square_mm:.1f} mm²"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.2f} %"

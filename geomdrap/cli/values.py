@@ -1,0 +1,131 @@
+"""Types of option values: each says in one sentence what is wrong with a value it refuses."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+import click
+
+Vector = tuple[float, float, float]
+
+
+class Number(click.ParamType):
+    """A finite number, optionally within bounds (``above`` and ``below`` are excluded themselves)."""
+
+    def __init__(self, name: str, above: float = -math.inf, below: float = math.inf):
+        self.name = name
+        self.above = above
+        self.below = below
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Give the number, or fail with a sentence."""
+        number = _number(value)
+        if number is None:
+            self.fail(f"'{value}' is not a number", param, ctx)
+        if not self.above < number < self.below:
+            self.fail(f"{value} is not {self._range()}", param, ctx)
+        return number
+
+    def _range(self) -> str:
+        if math.isinf(self.below):
+            return "a finite number" if math.isinf(self.above) else f"a finite number above {self.above:g}"
+        return f"between {self.above:g} and {self.below:g}"
+
+
+class Triple(click.ParamType):
+    """A vector or point: three finite numbers with commas between."""
+
+    name = "x,y,z"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Vector:
+        """Give three floats, or fail with a sentence."""
+        if isinstance(value, tuple):
+            return value
+        numbers = [_number(part) for part in str(value).split(",")]
+        if len(numbers) != 3 or any(number is None or not math.isfinite(number) for number in numbers):
+            self.fail(f"'{value}' is not three finite numbers with commas, as in 10,-5,84.4", param, ctx)
+        x, y, z = (float(number) for number in numbers if number is not None)
+        return x, y, z
+
+
+class Direction(Triple):
+    """A direction: a vector that is not zero."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Vector:
+        """Give three floats that are not all zero, or fail with a sentence."""
+        vector = super().convert(value, param, ctx)
+        if not any(vector):
+            self.fail("0,0,0 has no direction", param, ctx)
+        return vector
+
+
+class Origin(click.ParamType):
+    """The seed: ``centroid``, a point ``x,y,z`` or ``vertex:N``."""
+
+    name = "centroid|x,y,z|vertex:N"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> str | int | Vector:
+        """Give ``"centroid"``, a vertex number or three floats, or fail with a sentence."""
+        if not isinstance(value, str) or value == "centroid":
+            return value
+        vertex = re.fullmatch(r"vertex:(\d{1,18})", value)
+        if vertex:
+            return int(vertex[1])
+        if value.startswith("vertex:"):
+            self.fail(f"'{value}' is not a vertex; write vertex:N with N a whole number from 0", param, ctx)
+        if "," not in value:
+            self.fail(f"'{value}' is not centroid, a point x,y,z or vertex:N", param, ctx)
+        return Triple().convert(value, param, ctx)
+
+
+class Size(click.ParamType):
+    """The blank: width times height, as in ``400x300``."""
+
+    name = "WxH"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, float]:
+        """Give width and height, or fail with a sentence."""
+        if isinstance(value, tuple):
+            return value
+        numbers = [_number(part) for part in re.split("[xX×]", str(value))]
+        if len(numbers) != 2 or any(n is None or not 0 < n < math.inf for n in numbers):
+            self.fail(f"'{value}' is not a width and a height above 0, as in 400x300", param, ctx)
+        width, height = (float(number) for number in numbers if number is not None)
+        return width, height
+
+
+class Names(click.ParamType):
+    """A list of names with commas between, each of them known; ``none`` stands for the empty list."""
+
+    def __init__(self, known: tuple[str, ...]):
+        self.known = known
+        self.name = "name,name,..."
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, ...]:
+        """Give the names in the order of the known ones, or fail and list those."""
+        if isinstance(value, tuple):
+            return value
+        asked = {part.strip().lower() for part in str(value).split(",")}
+        if asked == {"none"}:
+            return ()
+        for name in sorted(asked.difference(self.known)):
+            self.fail(f"'{name}' is not one of {', '.join(self.known)}, or none alone", param, ctx)
+        return tuple(name for name in self.known if name in asked)
+
+
+def _number(text: Any) -> float | None:
+    """Read a float as people write it; Python's own reader also takes ``1_000``, which is a typing error."""
+    if isinstance(text, str) and "_" in text:
+        return None
+    try:
+        return float(text)
+    except (TypeError, ValueError):
+        return None

@@ -1,0 +1,15 @@
+"""Errors that a user can act on: one sentence that names the thing and says what to do."""
+
+from __future__ import annotations
+
+
+class GeomdrapError(Exception):
+    """Bad input or usage. The command line prints it in one line and exits with code 2."""
+
+
+class SurfaceError(GeomdrapError):
+    """The part cannot be read or is not a surface that can be draped."""
+
+
+class DrapeError(GeomdrapError):
+    """The drape cannot start or cannot be carried out as asked (seed, heading, pitch, blank)."""

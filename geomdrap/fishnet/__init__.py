@@ -1,0 +1,8 @@
+"""The fishnet: cells of inextensible yarn pieces, closed one by one from a seed."""
+
+from geomdrap.fishnet.drape import drape
+from geomdrap.fishnet.fabric import Fabric
+from geomdrap.fishnet.grid import Status
+from geomdrap.fishnet.net import Net
+
+__all__ = ["Fabric", "Net", "Status", "drape"]

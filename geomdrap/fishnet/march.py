@@ -1,0 +1,225 @@
+"""The march: generators from the seed, cells quadrant by quadrant, and the front carried on where an axis ends."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geomdrap.fishnet.cell import CLOSED, FOLDED, OFF_PART, close_cell
+from geomdrap.fishnet.grid import PIECES, STATUS, TRIED, Grid
+from geomdrap.fishnet.place import (
+    PRESENT,
+    add_piece,
+    depart_as,
+    departure,
+    has_piece,
+    place,
+    side_between,
+)
+from geomdrap.geodesic.compiled import inlined, kernel
+from geomdrap.geodesic.mesh import Mesh, in_space
+from geomdrap.geodesic.trace import follow
+from geomdrap.geodesic.unfold import ENDED
+
+UNREACHED = 0
+IS_OFF_PART = 2
+IS_FOLDED = 4
+IS_BEHIND_FOLD = 5
+IS_NOT_CLOSED = 7
+
+SAME_PLACE = 2e-3  # of the side: two fronts that meet this closely are one net; else there is a seam
+
+
+@inlined
+def inside(grid: Grid, i: int, j: int) -> bool:
+    """Whether the grid has a place for node (i, j)."""
+    return 0 <= i < grid.face.shape[0] and 0 <= j < grid.face.shape[1]
+
+
+@kernel
+def lay_yarn(
+    mesh: Mesh, grid: Grid, i: int, j: int, di: int, dj: int, face: int, x: float, y: float, dx: float, dy: float
+) -> bool:
+    """Continue a yarn straight on from a point by one side and put node (i + di, j + dj) there."""
+    k, m = i + di, j + dj
+    side = side_between(grid, i, j, di, dj)
+    status, end, ex, ey, ax, ay, _, _, _ = follow(
+        mesh.row, mesh.link, face, x, y, dx, dy, side
+    )
+    if status != ENDED:
+        grid.marks[k, m, STATUS] = IS_OFF_PART
+        return False
+    if not place(mesh, grid, k, m, end, ex, ey, side):
+        return False
+    add_piece(grid, i, j, di, dj, dx, dy, ax, ay)
+    return True
+
+
+@kernel
+def lay_generators(mesh: Mesh, grid: Grid, i0: int, j0: int, starts: np.ndarray, places: np.ndarray) -> None:
+    """Lay the four half-axes, a node of each in turn so that on a closed part none runs all the way round.
+
+    ``starts`` (4,) are the faces and ``places`` (4, 4) points and directions with which +u, +v, -u, -v leave.
+    """
+    steps = ((1, 0), (0, 1), (-1, 0), (0, -1))
+    going = np.ones(4, np.bool_)
+    for n in range(max(grid.face.shape[0], grid.face.shape[1])):
+        for a in range(4):
+            di, dj = steps[a]
+            i, j = i0 + n * di, j0 + n * dj
+            if not going[a] or not inside(grid, i + di, j + dj):
+                going[a] = False
+                continue
+            if n == 0:
+                x, y, dx, dy = places[a]
+                keep = departure(grid, i, j, di, dj)
+                going[a] = lay_yarn(mesh, grid, i, j, di, dj, starts[a], x, y, dx, dy)
+                if going[a]:  # the seed keeps the right angle: on a vertex its half-axes lie in other frames
+                    depart_as(grid, i, j, di, dj, keep[0], keep[1])
+            else:
+                going[a] = carry_on(mesh, grid, i, j, di, dj)
+
+
+@kernel
+def carry_on(mesh: Mesh, grid: Grid, i: int, j: int, di: int, dj: int) -> bool:
+    """Lay one more side of the yarn that arrives at node (i, j) in direction (di, dj)."""
+    bx, by = departure(grid, i, j, -di, -dj)
+    x, y = grid.node[i, j, 0], grid.node[i, j, 1]
+    return lay_yarn(mesh, grid, i, j, di, dj, grid.face[i, j] - 1, x, y, -bx, -by)
+
+
+@kernel
+def same_place(mesh: Mesh, grid: Grid, i: int, j: int, face: int, x: float, y: float, side: float) -> bool:
+    """Whether a point is where node (i, j) already lies."""
+    px, py, pz = in_space(mesh.frames, face, x, y)
+    qx, qy, qz = in_space(mesh.frames, grid.face[i, j] - 1, grid.node[i, j, 0], grid.node[i, j, 1])
+    return (px - qx) ** 2 + (py - qy) ** 2 + (pz - qz) ** 2 <= (SAME_PLACE * side) ** 2
+
+
+@kernel
+def in_frame(mesh: Mesh, face: int, other: int, dx: float, dy: float) -> tuple[float, float]:
+    """Direction of one face, turned into the plane of another that is near it."""
+    if face == other:
+        return dx, dy
+    ex = ey = 0.0
+    for k in range(3):
+        along = dx * mesh.frames[face, 3 + k] + dy * mesh.frames[face, 6 + k]
+        ex += along * mesh.frames[other, 3 + k]
+        ey += along * mesh.frames[other, 6 + k]
+    norm = np.hypot(ex, ey)
+    return ex / norm, ey / norm
+
+
+@inlined
+def is_open(grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
+    """Whether the cell from A = (i, j) to C = (i + su, j + sv) can be tried: A, B, D are joined, C is not to both."""
+    k, m = i + su, j + sv
+    low_i, low_j = min(i, k), min(j, m)
+    # bits 1 and 2: warp and weft piece at the cell's low corner; 4: weft piece opposite; 8: warp piece opposite
+    pieces = (
+        (grid.marks[low_i, low_j, PIECES] & 3)
+        + (grid.marks[low_i + 1, low_j, PIECES] & 2) * 2
+        + (grid.marks[low_i, low_j + 1, PIECES] & 1) * 8
+    )
+    need = (1 if sv > 0 else 8) + (2 if su > 0 else 4)
+    if pieces == 15 or (pieces & need) != need:
+        return False
+    state = grid.marks[k, m, STATUS]
+    return state == UNREACHED or state == PRESENT or state == IS_OFF_PART or state == IS_NOT_CLOSED
+
+
+@inlined
+def try_cell(mesh: Mesh, grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
+    """Close the open cell between A = (i, j) and C = (i + su, j + sv); True if a node or a side was added."""
+    k, m = i + su, j + sv
+    known = grid.marks[k, m, STATUS] == PRESENT
+    bit = 1 << ((su > 0) + 2 * (sv > 0))
+    if grid.marks[k, m, TRIED] & bit:
+        return False
+    grid.marks[k, m, TRIED] |= bit
+
+    # the sides of a small cell are parallel: B to C as A to D, D to C as A to B
+    ux, uy = departure(grid, i, j, su, 0)
+    vx, vy = departure(grid, i, j, 0, sv)
+    c, s = ux * vx + uy * vy, ux * vy - uy * vx
+    sense = float(su * sv)
+    if s * sense <= 0.0:
+        if not known:
+            grid.marks[k, m, STATUS] = IS_FOLDED
+        return False
+    px, py = departure(grid, k, j, -su, 0)
+    qx, qy = departure(grid, i, m, 0, -sv)
+    xb, yb = grid.node[k, j, 0], grid.node[k, j, 1]
+    xd, yd = grid.node[i, m, 0], grid.node[i, m, 1]
+    lb, ld = side_between(grid, k, j, 0, sv), side_between(grid, i, m, su, 0)
+    state, face, x, y, obx, oby, abx, aby, odx, ody, adx, ady = close_cell(
+        mesh.row, mesh.link, mesh.frames,
+        grid.face[k, j] - 1, xb, yb, -(c * px - s * py), -(s * px + c * py), lb,
+        grid.face[i, m] - 1, xd, yd, -(c * qx + s * qy), -(c * qy - s * qx), ld,
+        sense,
+    )
+    if known:  # two fronts meet
+        if state != CLOSED or not same_place(mesh, grid, k, m, face, x, y, lb):
+            return False
+        abx, aby = in_frame(mesh, face, grid.face[k, m] - 1, abx, aby)
+        adx, ady = in_frame(mesh, face, grid.face[k, m] - 1, adx, ady)
+    # at B and D, too, the corner of the cell must open to its own side
+    if state == CLOSED and ((oby * px - obx * py) * sense >= 0.0 or (ody * qx - odx * qy) * sense <= 0.0):
+        state = FOLDED
+    if state != CLOSED and not known:
+        grid.marks[k, m, STATUS] = (
+            IS_FOLDED if state == FOLDED else IS_OFF_PART if state == OFF_PART else IS_NOT_CLOSED
+        )
+        return False
+    if not known and not place(mesh, grid, k, m, face, x, y, max(lb, ld)):
+        return False
+    add_piece(grid, k, j, 0, sv, obx, oby, abx, aby)
+    add_piece(grid, i, m, su, 0, odx, ody, adx, ady)
+    return True
+
+
+@inlined
+def shadowed(grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
+    """Whether the cell from node (i, j) rests on a node that is folded or behind a fold."""
+    b, d = grid.marks[i + su, j, STATUS], grid.marks[i, j + sv, STATUS]
+    return b == IS_FOLDED or b == IS_BEHIND_FOLD or d == IS_FOLDED or d == IS_BEHIND_FOLD
+
+
+@kernel
+def sweep(mesh: Mesh, grid: Grid, i0: int, j0: int, i1: int, j1: int, su: int, sv: int, outward: bool) -> int:
+    """Try every cell from node (i0, j0) to (i1, j1) in one sense of march; the number that gave something.
+
+    ``outward``: the march leads away from the seed. There a fold throws a shadow: what lies behind it would have
+    to be cut and stitched, so it is left bare and marked.
+    """
+    gained = 0
+    for j in range(j0, j1, sv):
+        for i in range(i0, i1, su):
+            state = grid.marks[i + su, j + sv, STATUS]
+            if is_open(grid, i, j, su, sv):
+                gained += try_cell(mesh, grid, i, j, su, sv)
+            elif outward and state == UNREACHED and shadowed(grid, i, j, su, sv):
+                grid.marks[i + su, j + sv, STATUS] = IS_BEHIND_FOLD
+    return gained
+
+
+@kernel
+def fill_quadrants(mesh: Mesh, grid: Grid, i0: int, j0: int) -> None:
+    """Close the cells between the half-axes, outward from the seed."""
+    box = grid.box.copy()
+    for su, sv in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
+        sweep(mesh, grid, i0, j0, box[1] if su > 0 else box[0], box[3] if sv > 0 else box[2], su, sv, True)
+
+
+@kernel
+def close_everywhere(mesh: Mesh, grid: Grid) -> None:
+    """Close every cell that has three nodes, from whichever side, until nothing more can be closed."""
+    gained = 1
+    while gained:
+        gained = 0
+        for su, sv in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
+            i0, i1, j0, j1 = grid.box
+            if su < 0:
+                i0, i1 = i1, i0
+            if sv < 0:
+                j0, j1 = j1, j0
+            gained += sweep(mesh, grid, i0, j0, i1, j1, su, sv, False)

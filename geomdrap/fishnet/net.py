@@ -1,0 +1,78 @@
+"""The net: where every crossing of the fabric lies on the part, and how much each cell shears."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.fishnet.fabric import Fabric
+
+if TYPE_CHECKING:
+    from geomdrap.surface import Surface
+
+
+@dataclass(frozen=True, eq=False)
+class Net:
+    """A draped fabric as a net of nodes.
+
+    ``u`` (nu,), ``v`` (nv,) mm from the origin along warp and weft in the flat fabric; ``points`` (nu, nv, 3) mm,
+    NaN where there is no node; ``face`` (nu, nv) the face of ``surface`` it lies on, -1 where none; ``status``
+    (nu, nv) of ``Status``: why a node is absent; ``status_around`` (nu + 2, nv + 2) the same with a frame of
+    one node more. ``cell_valid`` (nu - 1, nv - 1): the four sides of the cell exist. ``origin`` (3,) mm,
+    ``warp0``, ``weft0``, ``normal0`` (3,) unit vectors there; ``angle`` degrees; ``pitch`` mm; ``reach`` half
+    lengths of the blank, mm. ``notes`` say what was chosen, ``warnings`` what the user should look at.
+    """
+
+    surface: Surface
+    fabric: Fabric
+    origin: np.ndarray
+    origin_face: int
+    warp0: np.ndarray
+    weft0: np.ndarray
+    normal0: np.ndarray
+    angle: float
+    pitch: float
+    reach: tuple[float, float] | None
+    u: np.ndarray
+    v: np.ndarray
+    points: np.ndarray
+    face: np.ndarray
+    status_around: np.ndarray
+    cell_valid: np.ndarray
+    notes: tuple[str, ...] = field(default=())
+    warnings: tuple[str, ...] = field(default=())
+
+    @property
+    def status(self) -> np.ndarray:
+        """Why each node is present or absent (nu, nv), values of ``Status``."""
+        return self.status_around[1:-1, 1:-1]
+
+    @cached_property
+    def cell_shear(self) -> np.ndarray:
+        """Signed shear of the cells (nu - 1, nv - 1), degrees, NaN where a cell is not valid.
+
+        From the diagonals: in a parallelogram d1² - d2² = 4 a b sin γ and d1² + d2² = 2 (a² + b²). The quotient
+        of the two cancels the leading error of chords on a curved surface.
+        """
+        from geomdrap.fishnet.shear import shear_of_cells
+
+        return shear_of_cells(self.points, self.u, self.v, self.cell_valid)
+
+    @cached_property
+    def shear(self) -> np.ndarray:
+        """Signed shear at the nodes (nu, nv), degrees: mean of the corners of the cells around a node."""
+        from geomdrap.fishnet.shear import shear_at_nodes
+
+        return shear_at_nodes(self.points, self.cell_valid)
+
+    def interpolate(self, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Points (n, 3) mm on the surface and shear (n,) degrees at fabric coordinates u, v (n,) mm.
+
+        Bilinear in the cell, then moved onto the surface; NaN outside the valid cells.
+        """
+        from geomdrap.fishnet.interpolate import at_fabric_coordinates
+
+        return at_fabric_coordinates(self, np.atleast_1d(u), np.atleast_1d(v))

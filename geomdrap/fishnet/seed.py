@@ -1,0 +1,162 @@
+"""The seed: where the ply touches down first, and how its yarns leave from there."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.errors import DrapeError
+from geomdrap.geodesic.mesh import mesh_of
+from geomdrap.geodesic.vertex import total_angle, turn_left
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from geomdrap.surface import Surface
+
+    Origin = str | int | Sequence[float] | np.ndarray
+
+AT_VERTEX = 1e-7  # of the face's size: a seed this close to a vertex is on it
+ALONG_NORMAL = math.cos(math.radians(5.0))  # a reference direction this close to the normal gives no heading
+
+
+@dataclass(frozen=True)
+class Seed:
+    """Origin of the net: ``face``, ``point`` (3,) mm, unit ``normal``, ``warp`` and ``weft`` (3,) there.
+
+    ``starts`` (4,) and ``places`` (4, 4) are the faces, plane points and plane directions with which the
+    half-axes +u, +v, -u, -v leave; ``distance`` mm is how far the point asked for lies from the surface.
+    """
+
+    face: int
+    point: np.ndarray
+    normal: np.ndarray
+    warp: np.ndarray
+    weft: np.ndarray
+    starts: np.ndarray
+    places: np.ndarray
+    distance: float
+
+
+def locate(surface: Surface, origin: Origin) -> tuple[int, np.ndarray, float]:
+    """Face, point (3,) on the surface and distance (mm) of an origin: ``centroid``, a point or a vertex number.
+
+    Raises DrapeError where the origin cannot be read, and for a vertex that the part does not have.
+    """
+    if isinstance(origin, str) and origin != "centroid":
+        match = re.fullmatch(r"vertex:(\d+)", origin.strip())
+        if not match:
+            raise DrapeError(f"origin {origin!r} is not 'centroid', 'vertex:NUMBER' or three coordinates x, y, z")
+        origin = int(match[1])
+    if isinstance(origin, (int, np.integer)):
+        return _vertex(surface, int(origin))
+    target = surface.centroid if isinstance(origin, str) else np.asarray(origin, dtype=float)
+    if target.shape != (3,) or not np.isfinite(target).all():
+        raise DrapeError(f"origin {origin} is not three finite numbers x, y, z in mm")
+    near = surface.nearest(target[None])
+    return int(near.face[0]), near.point[0], float(near.distance[0])
+
+
+def _vertex(surface: Surface, number: int) -> tuple[int, np.ndarray, float]:
+    known = surface.vertex_of_input
+    vertex = int(known[number]) if 0 <= number < len(known) else -1
+    faces = np.flatnonzero((surface.triangles == vertex).any(axis=1)) if vertex >= 0 else np.array([], int)
+    if len(faces) == 0:
+        raise DrapeError(f"{surface.source} has no vertex {number} on a face; vertices are 0 to {len(known) - 1}")
+    return int(faces[0]), surface.points[vertex], 0.0
+
+
+def heading_frame(
+    surface: Surface, face: int, normal: np.ndarray, reference: np.ndarray | None
+) -> np.ndarray:
+    """Unit reference direction (3,) in the plane across ``normal``: the part's +x, or +y where x is along it.
+
+    Raises DrapeError for a reference direction of the user's that is zero or within 5° of the normal.
+    """
+    for direction in [np.eye(3)[0], np.eye(3)[1]] if reference is None else [np.asarray(reference, dtype=float)]:
+        norm = np.linalg.norm(direction)
+        if not (np.isfinite(norm) and norm > 0.0) or direction.shape != (3,):
+            raise DrapeError(f"reference direction {direction} is not a vector of three numbers with a length")
+        if abs(direction @ normal) < ALONG_NORMAL * norm:
+            flat = direction - (direction @ normal) * normal
+            return flat / np.linalg.norm(flat)
+    raise DrapeError("the reference direction is within 5° of the surface normal at the origin; choose another")
+
+
+def plant(
+    surface: Surface,
+    origin: Origin,
+    angle: float,
+    reference: np.ndarray | None = None,
+    weft_angle: float = 90.0,
+) -> Seed:
+    """Seed at an origin with the warp at ``angle`` degrees and the weft ``weft_angle`` degrees beyond it.
+
+    On a vertex the four half-axes share the angles of its faces in proportion, so that opposite ones are one
+    straightest line.
+    """
+    face, point, distance = locate(surface, origin)
+    vertex = _corner_at(surface, face, point)
+    mesh = mesh_of(surface)
+    fan = (mesh.row, mesh.link, face, vertex)
+    around = total_angle(*fan) if vertex >= 0 else -1.0
+    normal = surface.normals[face]
+    if around > 0.0:
+        normal = surface.vertex_normals[surface.triangles[face, vertex]]
+    across = heading_frame(surface, face, normal, reference)
+    beside = np.cross(normal, across)
+    headings_rad = np.radians(angle + np.array([0.0, weft_angle, 180.0, 180.0 + weft_angle]))
+    directions = np.cos(headings_rad)[:, None] * across + np.sin(headings_rad)[:, None] * beside
+    starts, places = np.full(4, face), np.empty((4, 4))
+    if around > 0.0:
+        base_rad = _angle_in_fan(surface, face, vertex, normal, directions[0], around)
+        for a in range(4):
+            turn = base_rad + (headings_rad[a] - headings_rad[0]) * around / (2.0 * math.pi)
+            start, at, dx, dy = turn_left(*fan, turn % around)
+            starts[a], places[a] = start, (*mesh.row[start, 2 * at : 2 * at + 2], dx, dy)
+    else:
+        frame = np.array([surface.e1[face], surface.e2[face]])
+        places[:, :2] = frame @ (point - surface.origin[face])
+        places[:, 2:] = directions @ frame.T
+        places[:, 2:] /= np.linalg.norm(places[:, 2:], axis=1, keepdims=True)
+    return Seed(face, point, normal, directions[0], directions[1], starts, places, distance)
+
+
+def _corner_at(surface: Surface, face: int, point: np.ndarray) -> int:
+    """Corner of the face that the point lies on, or -1."""
+    away = np.linalg.norm(surface.points[surface.triangles[face]] - point, axis=1)
+    nearest = int(away.argmin())
+    return nearest if away[nearest] <= AT_VERTEX * math.sqrt(surface.areas[face]) else -1
+
+
+def _angle_in_fan(
+    surface: Surface, face: int, at: int, normal: np.ndarray, direction: np.ndarray, around: float
+) -> float:
+    """Angle in the faces (radians) from the fan's first edge to a direction of the tangent plane.
+
+    Seen along the normal the fan's edges cut the tangent plane into sectors; a sector is stretched evenly on its
+    face, and all of them together to the angle that the faces have.
+    """
+    seen: list[float] = []
+    real: list[float] = []
+    here, k = face, at
+    while True:
+        corners = surface.points[surface.triangles[here]]
+        first, second = corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]
+        seen.append(math.atan2(normal @ np.cross(direction, first), direction @ first - (direction @ normal) * (normal @ first)))
+        real.append(math.atan2(float(np.linalg.norm(np.cross(first, second))), float(first @ second)))
+        over = (k + 2) % 3
+        k, here = int(surface.neighbour_edge[here, over]), int(surface.neighbours[here, over])
+        if here == face and k == at:
+            break
+    sectors = np.diff([*seen, seen[0]]) % (2.0 * math.pi)
+    before = np.concatenate([[0.0], np.cumsum(real)])
+    for n, sector in enumerate(sectors):
+        into = -seen[n] % (2.0 * math.pi)  # from edge n, counter-clockwise, to the direction at angle 0
+        if into <= sector:
+            return float(before[n] + (into / sector if sector > 0.0 else 0.0) * real[n]) % around
+    return 0.0

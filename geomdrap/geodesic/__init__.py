@@ -1,0 +1,5 @@
+"""Straightest geodesics across unfolded triangles."""
+
+from geomdrap.geodesic.trace import Stop, Trace, trace
+
+__all__ = ["Stop", "Trace", "trace"]

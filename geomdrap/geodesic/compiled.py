@@ -1,0 +1,12 @@
+"""How kernels are compiled, in one place.
+
+Divisions follow IEEE rules instead of raising, and products may be fused with sums; both matter for speed, neither
+for results beyond the last digits.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+kernel = njit(cache=True, error_model="numpy", fastmath={"contract"})
+inlined = njit(cache=True, error_model="numpy", fastmath={"contract"}, inline="always")

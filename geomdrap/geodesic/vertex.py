@@ -1,0 +1,74 @@
+"""Directions around a vertex: how a straightest line goes on, and how a heading leaves, where faces meet."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from geomdrap.geodesic.compiled import kernel
+from geomdrap.geodesic.mesh import after, before
+
+FAN_LIMIT = 100_000
+
+
+@kernel
+def wedge(row: np.ndarray, f: int, at: int) -> tuple[float, float, float]:
+    """Unit direction from corner ``at`` of face f to the next corner, and the interior angle there (radians)."""
+    x, y = row[f, 2 * at], row[f, 2 * at + 1]
+    px, py = row[f, 2 * after(at)] - x, row[f, 2 * after(at) + 1] - y
+    qx, qy = row[f, 2 * before(at)] - x, row[f, 2 * before(at) + 1] - y
+    length = math.hypot(px, py)
+    return px / length, py / length, math.atan2(px * qy - py * qx, px * qx + py * qy)
+
+
+@kernel
+def total_angle(row: np.ndarray, link: np.ndarray, face: int, at: int) -> float:
+    """Sum of the face angles around an interior vertex (radians); -1 at a vertex of the rim."""
+    total = 0.0
+    here, k = face, at
+    for _ in range(FAN_LIMIT):
+        total += wedge(row, here, k)[2]
+        onward = link[here, before(k)]
+        if onward < 0:
+            return -1.0
+        here, k = onward >> 2, onward & 3
+        if here == face and k == at:
+            return total
+    return -1.0
+
+
+@kernel
+def turn_left(row: np.ndarray, link: np.ndarray, face: int, at: int, angle_rad: float) -> Any:
+    """Turn counter-clockwise about corner ``at``, from its first edge, by an angle measured in the faces.
+
+    Returns ``(face, corner, dx, dy)`` of the direction reached; face -1 where the rim is in the way.
+    """
+    here, k = face, at
+    left = angle_rad
+    for _ in range(FAN_LIMIT):
+        dx, dy, opening = wedge(row, here, k)
+        if left <= opening:
+            c, s = math.cos(left), math.sin(left)
+            return here, k, c * dx - s * dy, s * dx + c * dy
+        left -= opening
+        onward = link[here, before(k)]
+        if onward < 0:
+            return -1, k, dx, dy
+        here, k = onward >> 2, onward & 3
+    return -1, k, dx, dy
+
+
+@kernel
+def go_straight_through(row: np.ndarray, link: np.ndarray, face: int, at: int, dx: float, dy: float) -> Any:
+    """Continue a line that runs into corner ``at`` so that the angles on its two sides are equal.
+
+    This is the straightest geodesic of Polthier and Schmies (1998). Returns as ``turn_left``.
+    """
+    total = total_angle(row, link, face, at)
+    if total < 0.0:
+        return -1, at, dx, dy
+    ex, ey, _ = wedge(row, face, at)
+    back = math.atan2(ex * -dy - ey * -dx, ex * -dx + ey * -dy)
+    return turn_left(row, link, face, at, (back + 0.5 * total) % total)

@@ -1,0 +1,98 @@
+"""Progress and the note on compilation."""
+
+from __future__ import annotations
+
+import io
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from geomdrap.cli import progress
+from geomdrap.cli.progress import Progress, announce_compilation, kernels_are_compiled
+
+
+class Terminal(io.StringIO):
+    """A stderr that says it is a terminal; put in place in the test, as pytest resets what fixtures set."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+@contextmanager
+def _terminal(monkeypatch: pytest.MonkeyPatch, patience: float) -> Iterator[Terminal]:
+    with monkeypatch.context() as patch:
+        screen = Terminal()
+        patch.setattr(sys, "stderr", screen)
+        patch.setattr(progress, "PATIENCE", patience)
+        yield screen
+
+
+def test_nothing_is_shown_where_stderr_is_no_terminal(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(progress, "PATIENCE", 0.0)
+    with Progress() as steps:
+        steps.step("Draping")
+        steps.share(0.5)
+    assert capsys.readouterr().err == ""
+
+
+def test_a_quick_step_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    with _terminal(monkeypatch, patience=60.0) as screen, Progress() as steps:
+        steps.step("Reading")
+        steps.share(0.5)
+        steps.step("Draping")
+    assert screen.getvalue() == ""
+
+
+def test_a_slow_step_shows_its_name_and_share_and_is_wiped_away(monkeypatch: pytest.MonkeyPatch) -> None:
+    with _terminal(monkeypatch, patience=0.01) as screen, Progress() as steps:
+        steps.step("Draping")
+        time.sleep(0.1)
+        steps.share(0.5)
+    assert "Draping ..." in screen.getvalue()
+    assert "50 %" in screen.getvalue()
+    assert screen.getvalue().endswith("\r\x1b[K")
+
+
+def test_quiet_shows_nothing_even_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    with _terminal(monkeypatch, patience=0.0) as screen, Progress(quiet=True) as steps:
+        steps.step("Draping")
+        steps.share(0.5)
+    assert screen.getvalue() == ""
+
+
+def test_the_line_is_wiped_away_after_an_error_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    with _terminal(monkeypatch, patience=0.0) as screen, pytest.raises(RuntimeError), Progress() as steps:
+        steps.step("Draping")
+        steps.share(0.5)
+        raise RuntimeError
+    assert screen.getvalue().endswith("\r\x1b[K")
+
+
+def test_an_empty_cache_is_announced_and_a_filled_one_is_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    assert not kernels_are_compiled()
+    announce_compilation(quiet=False)
+    assert capsys.readouterr().err.startswith("Note: compiling the kernels")
+    deep = tmp_path / "fishnet_0a1b"
+    deep.mkdir()
+    (deep / f"march.walk-1.py{sys.version_info.major}{sys.version_info.minor}.nbi").touch()
+    assert kernels_are_compiled()
+    announce_compilation(quiet=False)
+    assert capsys.readouterr().err == ""
+
+
+def test_kernels_of_another_python_do_not_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    (tmp_path / "fishnet_0a1b").mkdir()
+    (tmp_path / "fishnet_0a1b" / "march.walk-1.py27.nbi").touch()
+    assert not kernels_are_compiled()

@@ -1,0 +1,64 @@
+import pickle
+
+import numpy as np
+import pytest
+from raw_meshes import bumpy
+
+from geomdrap.surface import Surface
+
+
+def brute_force(points, triangles, queries):
+    """Distances (k,) to the nearest triangle, by the nearest point of each: inside, else on an edge."""
+    best = np.full(len(queries), np.inf)
+    for a, b, c in points[triangles]:
+        normal = np.cross(b - a, c - a)
+        foot = queries - np.outer((queries - a) @ normal / (normal @ normal), normal)
+        inside = np.ones(len(queries), bool)
+        for p, q in ((a, b), (b, c), (c, a)):
+            inside &= np.cross(q - p, foot - p) @ normal >= 0
+            t = np.clip((queries - p) @ (q - p) / ((q - p) @ (q - p)), 0, 1)
+            best = np.minimum(best, np.linalg.norm(queries - p - np.outer(t, q - p), axis=1))
+        best = np.where(inside, np.minimum(best, np.linalg.norm(queries - foot, axis=1)), best)
+    return best
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e-3, 1.0, 1e3, 1e6])
+@pytest.mark.parametrize("away", [0.0, 1e3])
+def test_nearest_points_agree_with_brute_force_at_any_scale_and_place(scale, away):
+    points, triangles = bumpy(8, 100.0 * scale)
+    shift = np.array([away, -2 * away, 3 * away]) * 100.0 * scale
+    surface = Surface(points + shift, triangles)
+    rng = np.random.default_rng(0)
+    queries = rng.uniform(-0.5, 1.5, (300, 3)) * [100.0, 100.0, 30.0] * scale
+    found = surface.nearest(queries + shift)
+    expected = brute_force(points, triangles, queries)
+    assert np.allclose(found.distance, expected, rtol=0, atol=(1e-13 + 1e-15 * away) * surface.diagonal)
+    plane = np.einsum("ki,ki->k", found.point - surface.origin[found.face], surface.normals[found.face])
+    assert np.abs(plane).max() < (1e-13 + 1e-15 * away) * surface.diagonal
+
+
+def test_points_on_the_surface_are_found_on_their_own_face():
+    surface = Surface(*bumpy(8))
+    middle = surface.points[surface.triangles].mean(axis=1)
+    found = surface.nearest(middle)
+    assert (found.face == np.arange(len(middle))).all()
+    assert found.distance.max() < 1e-13 * surface.diagonal
+
+
+def test_a_single_point_may_be_given_flat():
+    assert Surface(*bumpy()).nearest([50.0, 50.0, 500.0]).point.shape == (1, 3)
+
+
+def test_queries_that_are_no_points_find_nothing():
+    found = Surface(*bumpy()).nearest([[np.nan, 0, 0], [1.0, 2.0, 3.0], [np.inf, 0, 0]])
+    assert found.face[0] == found.face[2] == -1
+    assert found.face[1] >= 0
+    assert np.isnan(found.distance[[0, 2]]).all()
+    assert np.isnan(found.point[0]).all()
+
+
+def test_a_surface_that_went_through_a_pickle_still_answers():
+    surface = Surface(*bumpy())
+    surface.nearest([[0.0, 0.0, 0.0]])
+    again = pickle.loads(pickle.dumps(surface))
+    assert np.array_equal(again.nearest([[3.0, 4.0, 50.0]]).point, surface.nearest([[3.0, 4.0, 50.0]]).point)
