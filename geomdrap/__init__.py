@@ -19,13 +19,28 @@ _HOMES = {
     "read_surface": "surface",
     "shapes": "surface",
     "trace": "geodesic",
+    "Effect": "fishnet",
     "Fabric": "fishnet",
     "Net": "fishnet",
     "drape": "fishnet",
     "evaluate": "fields",
 }
 
-__all__ = ["__version__", *sorted(_HOMES)]
+__all__ = [
+    "DrapeError",
+    "Effect",
+    "Fabric",
+    "GeomdrapError",
+    "Net",
+    "Surface",
+    "SurfaceError",
+    "__version__",
+    "drape",
+    "evaluate",
+    "read_surface",
+    "shapes",
+    "trace",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -72,7 +72,7 @@ def grouped(area: float) -> str:
     return f"{area:,.0f}".replace(",", "\u2009") if area >= 1000 else f"{area:.4g}"
 
 
-def position(point: Sequence[float], diagonal: float) -> str:
+def position(point: Sequence[float] | np.ndarray, diagonal: float) -> str:
     """A point in mm to 1/10000 of the part's diagonal: 'x, y, z'."""
     decimals = int(np.clip(4 - np.ceil(np.log10(diagonal)), 0, 6))
     digits = [f"{round(float(x), decimals) + 0.0:.{decimals}f}" for x in point]

@@ -1,8 +1,9 @@
 """The fishnet: cells of inextensible yarn pieces, closed one by one from a seed."""
 
 from geomdrap.fishnet.drape import drape
+from geomdrap.fishnet.effect import Effect
 from geomdrap.fishnet.fabric import Fabric
 from geomdrap.fishnet.grid import Status
 from geomdrap.fishnet.net import Net
 
-__all__ = ["Fabric", "Net", "Status", "drape"]
+__all__ = ["Effect", "Fabric", "Net", "Status", "drape"]

@@ -49,8 +49,19 @@ def crossing(
 
 @kernel
 def meeting_rotation(
-    frames: np.ndarray, f: int, x: float, y: float, dx: float, dy: float, lb: float,
-    g: int, p: float, q: float, ex: float, ey: float, ld: float,
+    frames: np.ndarray,
+    f: int,
+    x: float,
+    y: float,
+    dx: float,
+    dy: float,
+    lb: float,
+    g: int,
+    p: float,
+    q: float,
+    ex: float,
+    ey: float,
+    ld: float,
 ) -> tuple[float, float]:
     """Least-squares rotations (radians) of two lines that bring their ends together in space.
 
@@ -77,9 +88,21 @@ def meeting_rotation(
 
 @kernel
 def close_cell(
-    row: np.ndarray, link: np.ndarray, frames: np.ndarray,
-    fb: int, xb: float, yb: float, bx: float, by: float, lb: float,
-    fd: int, xd: float, yd: float, dx: float, dy: float, ld: float,
+    row: np.ndarray,
+    link: np.ndarray,
+    frames: np.ndarray,
+    fb: int,
+    xb: float,
+    yb: float,
+    bx: float,
+    by: float,
+    lb: float,
+    fd: int,
+    xd: float,
+    yd: float,
+    dx: float,
+    dy: float,
+    ld: float,
     sense: float,
 ) -> Any:
     """Close one cell.
@@ -127,8 +150,19 @@ def close_cell(
             if sb == LEFT_THE_PART and sd == LEFT_THE_PART:
                 return OFF_PART, -1, 0.0, 0.0, bx, by, ux, uy, dx, dy, wx, wy
             turn_b, turn_d = meeting_rotation(
-                frames, f, px + lb * ux, py + lb * uy, ux, uy, lb,
-                g, qx + ld * wx, qy + ld * wy, wx, wy, ld,
+                frames,
+                f,
+                px + lb * ux,
+                py + lb * uy,
+                ux,
+                uy,
+                lb,
+                g,
+                qx + ld * wx,
+                qy + ld * wy,
+                wx,
+                wy,
+                ld,
             )
             c, s = math.cos(turn_b), math.sin(turn_b)
             bx, by = c * bx - s * by, s * bx + c * by

@@ -9,12 +9,13 @@ import numpy as np
 
 from geomdrap.errors import DrapeError
 from geomdrap.fishnet import seed as seeds
+from geomdrap.fishnet.effect import Effect, after, before
 from geomdrap.fishnet.extent import Extent, first_extent, grow, sides
 from geomdrap.fishnet.fabric import Fabric
 from geomdrap.fishnet.front import carry_front_on
-from geomdrap.fishnet.grid import PIECES, Grid, empty_grid
+from geomdrap.fishnet.grid import PIECES, Grid, Status, empty_grid
 from geomdrap.fishnet.march import fill_quadrants, lay_generators
-from geomdrap.fishnet.net import Net
+from geomdrap.fishnet.net import Net, cells_of
 from geomdrap.fishnet.pitch import check_pitch, choose_pitch, coarse_facets
 from geomdrap.fishnet.place import all_in_space, place_seed
 from geomdrap.geodesic.mesh import Mesh, mesh_of
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 
+SPREAD = 2.0  # cells: the facets' curvature is spread no further, which is below what the net resolves
+
+
 def drape(
     surface: Surface,
     origin: seeds.Origin = "centroid",
@@ -32,6 +36,7 @@ def drape(
     pitch: float | None = None,
     reach: tuple[float, float] | None = None,
     fabric: Fabric | None = None,
+    effects: Sequence[Effect] = (),
     *,
     reference: Sequence[float] | None = None,
     project: bool = False,
@@ -41,31 +46,32 @@ def drape(
     Parameters: ``origin`` is ``"centroid"``, a point (3,) mm, a vertex number or ``"vertex:NUMBER"``; ``angle``
     the heading of the warp, degrees counter-clockwise about the normal from ``reference`` (default the part's
     +x); ``pitch`` the side of a cell, mm (chosen from the part if None); ``reach`` half lengths of the blank
-    along warp and weft, mm; ``project`` allows an origin further than a pitch from the surface.
+    along warp and weft, mm; ``effects`` act before and after (see ``Effect``); ``project`` allows an origin further
+    than a pitch from the surface.
     Raises SurfaceError where the part cannot be draped, DrapeError for an impossible seed, heading, pitch or
     blank.
 
     Source: H. Borouchaki and A. Cherouat, GeomDrap (modified MOSAIC).
     """
-    fabric = fabric or Fabric()
+    surface, fabric = before(effects, surface, fabric or Fabric())
     if not math.isfinite(angle):
         raise DrapeError(f"the heading must be a finite number of degrees, not {angle}")
-    surface.require_drapable()
-    face, _, distance = seeds.locate(surface, origin)
+    face, point, distance = seeds.locate(surface, origin)
     part = surface.only_component(face)
+    part.require_drapable()
     pitch, notes = (check_pitch(part, pitch), ()) if pitch is not None else choose_pitch(part)
     _check_distance(surface, origin, distance, pitch, project)
-    start = seeds.plant(part, origin if part is surface else seeds.locate(surface, origin)[1], angle,
-                        None if reference is None else np.asarray(reference, dtype=float), fabric.weft_angle)
-    mesh = mesh_of(part)
+    mesh = mesh_of(part.lidded, SPREAD * pitch)
+    start = seeds.plant(part, point, angle, mesh, reference, fabric.weft_angle)
     extent = first_extent(part, start, pitch, reach)
     while True:
         grid = _march(mesh, start, extent, pitch, fabric)
-        larger = grow(extent, grid, part, pitch)
+        larger = grow(extent, grid, pitch)
         if larger == extent:
             break
         extent = larger
-    return _as_net(surface, part, start, angle, pitch, reach, fabric, extent, mesh, grid, notes)
+    net = _as_net(surface, part, start, angle, pitch, reach, fabric, extent, mesh, grid, notes)
+    return after(effects, net)
 
 
 def _march(mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric) -> Grid:
@@ -87,7 +93,7 @@ def _seed_in_frame(mesh: Mesh, start: seeds.Seed) -> tuple[float, float]:
 
 def _check_distance(surface: Surface, origin: seeds.Origin, distance: float, pitch: float, project: bool) -> None:
     """The centroid is projected by definition; a point further off than a pitch is more likely a mistake."""
-    if origin == "centroid" if isinstance(origin, str) else False:
+    if isinstance(origin, str) and origin == "centroid":
         return
     if distance > pitch and not project:
         raise DrapeError(
@@ -112,10 +118,19 @@ def _as_net(
     """Cut the grid to the nodes that are there and turn it into a Net."""
     i0, i1, j0, j1 = (int(k) for k in grid.box)
     near = np.s_[i0 : i1 + 1, j0 : j1 + 1]
-    points = all_in_space(mesh, grid, i0, i1 + 1, j0, j1 + 1)
+    face = grid.face[near] - 1
+    lattice = all_in_space(mesh, grid, i0, i1 + 1, j0, j1 + 1)
     pieces = grid.marks[near][..., PIECES]
     warp, weft = (pieces & 1) != 0, (pieces & 2) != 0
-    valid = warp[:-1, :-1] & warp[:-1, 1:] & weft[:-1, :-1] & weft[1:, :-1]
+    lattice_valid = warp[:-1, :-1] & warp[:-1, 1:] & weft[:-1, :-1] & weft[1:, :-1]
+    status = extent.status_around(grid)
+    over_hole = face >= len(part.triangles)
+    points, valid = lattice, lattice_valid
+    if over_hole.any():
+        status[1:-1, 1:-1][over_hole] = Status.IN_HOLE
+        points = np.where(over_hole[..., None], np.nan, lattice)
+        face = np.where(over_hole, -1, face)
+        valid = lattice_valid & np.isfinite(cells_of(points[..., 0])).all(axis=0)
     if part is not surface:
         others = surface.n_components - 1
         notes = (*notes, f"the part has {others + 1} separate pieces; the one with the origin is draped")
@@ -133,9 +148,11 @@ def _as_net(
         u=(np.arange(i0, i1 + 1) - extent.west) * pitch,
         v=(np.arange(j0, j1 + 1) - extent.south) * pitch,
         points=points,
-        face=np.asarray(grid.face[near]) - 1,
-        status_around=extent.status_around(grid),
+        face=face,
+        status_around=status,
         cell_valid=valid,
+        lattice=lattice,
+        lattice_valid=lattice_valid,
         notes=notes,
         warnings=coarse_facets(part, pitch),
     )

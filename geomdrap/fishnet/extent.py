@@ -19,47 +19,50 @@ if TYPE_CHECKING:
 SPARE = 1.3  # fabric is longer than its shadow on the tangent plane
 
 
+UNLIMITED = 1 << 40
+
+
 @dataclass(frozen=True)
 class Extent:
-    """Cells from the seed toward +u, -u, +v, -v; ``bounded``: they end where the blank does."""
+    """Cells from the seed toward +u, -u, +v, -v, and the most that the blank allows in each of them."""
 
     east: int
     west: int
     north: int
     south: int
-    bounded: bool
+    limits: tuple[int, int, int, int] = (UNLIMITED,) * 4
 
     def status_around(self, grid: Grid) -> np.ndarray:
-        """Status of the nodes and of a frame of one node around them; beyond the grid: beyond the blank."""
+        """Status of the nodes and of a frame of one node around them; beyond a full grid: beyond the blank."""
         i0, i1, j0, j1 = (int(k) for k in grid.box)
         padded = np.full((grid.face.shape[0] + 2, grid.face.shape[1] + 2), np.uint8(Status.BLANK))
         padded[1:-1, 1:-1] = grid.marks[..., STATUS]
         return padded[i0 : i1 + 3, j0 : j1 + 3].copy()
 
 
-def first_extent(
-    surface: Surface, seed: Seed, pitch: float, reach: tuple[float, float] | None
-) -> Extent:
-    """Extent from the blank, or else from the part's shadow on the tangent plane at the seed.
+def first_extent(surface: Surface, seed: Seed, pitch: float, reach: tuple[float, float] | None) -> Extent:
+    """Extent from the part's shadow on the tangent plane at the seed, within the blank.
 
     Raises DrapeError for a blank without a length and for more nodes than memory holds.
     """
+    limits = (UNLIMITED,) * 4
     if reach is not None:
         if len(reach) != 2 or not all(math.isfinite(r) and r > 0.0 for r in reach):
             raise DrapeError(f"the blank must have two positive half lengths in mm, not {reach}")
-    _require_memory(1.2 * surface.area / pitch**2, pitch)
+        along, across = (int(min(r / pitch + 1e-9, UNLIMITED)) for r in reach)
+        limits = (along, along, across, across)
     away = surface.points - seed.point
-    along, across = away @ seed.warp, away @ seed.weft
-    counts = [
-        math.ceil(SPARE * max(float(side), 0.0) / pitch) + 2
-        for side in (along.max(), -along.min(), across.max(), -across.min())
-    ]
-    if reach is not None:
-        limits = [math.floor(r / pitch + 1e-9) for r in (reach[0], reach[0], reach[1], reach[1])]
-        counts = limits
-    extent = Extent(*counts, bounded=reach is not None)
-    _require_memory((counts[0] + counts[1]) * (counts[2] + counts[3]) / 4.0, pitch)
-    return extent
+    along_u, along_v = away @ seed.warp, away @ seed.weft
+    shadow = (along_u.max(), -along_u.min(), along_v.max(), -along_v.min())
+    counts = [math.ceil(SPARE * max(float(side), 0.0) / pitch) + 2 for side in shadow]
+    return _within(counts, limits, pitch)
+
+
+def _within(counts: list[int], limits: tuple[int, int, int, int], pitch: float) -> Extent:
+    """An extent cut to its limits, if memory holds it: of a grid turned against the part a quarter is net."""
+    east, west, north, south = (min(c, m) for c, m in zip(counts, limits, strict=True))
+    _require_memory((east + west + 1.0) * (north + south + 1.0) / 4.0, pitch)
+    return Extent(east, west, north, south, limits)
 
 
 def _require_memory(nodes: float, pitch: float) -> None:
@@ -78,19 +81,12 @@ def sides(extent: Extent, pitch: float) -> tuple[np.ndarray, np.ndarray]:
     return np.full(extent.east + extent.west, pitch), np.full(extent.north + extent.south, pitch)
 
 
-def grow(extent: Extent, grid: Grid, surface: Surface, pitch: float) -> Extent:
-    """A larger extent where the net reached the border of an unbounded grid, else the same one."""
-    if extent.bounded:
-        return extent
+def grow(extent: Extent, grid: Grid, pitch: float) -> Extent:
+    """A larger extent where the net reached the border of the grid before that of the blank, else the same one."""
     nu, nv = grid.face.shape
     i0, i1, j0, j1 = grid.box
-    larger = Extent(
-        east=extent.east * (2 if i1 == nu - 1 else 1),
-        west=extent.west * (2 if i0 == 0 else 1),
-        north=extent.north * (2 if j1 == nv - 1 else 1),
-        south=extent.south * (2 if j0 == 0 else 1),
-        bounded=False,
-    )
-    if larger != extent:
-        _require_memory((larger.east + larger.west) * (larger.north + larger.south) / 4.0, pitch)
-    return larger
+    reached = (i1 == nu - 1, i0 == 0, j1 == nv - 1, j0 == 0)
+    now = (extent.east, extent.west, extent.north, extent.south)
+    if not any(r and n < m for r, n, m in zip(reached, now, extent.limits, strict=True)):
+        return extent
+    return _within([2 * n + 2 if r else n for r, n in zip(reached, now, strict=True)], extent.limits, pitch)

@@ -1,8 +1,8 @@
 """Carrying the front on: where an axis leaves the part, another yarn becomes the generator of what lies beyond.
 
-Of all yarns that could be continued, the one that goes furthest is, straight on; the cells on both of its sides
-are then closed from it, and so on until no yarn leads anywhere new. One long generator in place of many short
-ones keeps the net smooth, and the choice does not depend on the numbering.
+Of all yarns that could be continued, the one nearest to the axis is, straight on, since it differs least from what
+the axis would have done had the part not ended there; of equals, the one that goes furthest. The cells on both of
+its sides are then closed from it, and so on until no yarn leads anywhere new.
 """
 
 from __future__ import annotations
@@ -29,7 +29,6 @@ from geomdrap.fishnet.place import (
 from geomdrap.geodesic.compiled import inlined, kernel
 from geomdrap.geodesic.mesh import Mesh, in_space
 from geomdrap.geodesic.unfold import ENDED, shoot
-
 
 STEP_I = (1, 0, -1, 0)
 STEP_J = (0, 1, 0, -1)
@@ -62,9 +61,7 @@ def sides_ahead(mesh: Mesh, grid: Grid, i: int, j: int, di: int, dj: int) -> int
                 grid.marks[k, m, STATUS] = IS_BEHIND_FOLD
             return n
         side = side_between(grid, k - di, m - dj, di, dj)
-        status, face, x, y, dx, dy = shoot(
-            mesh.row, mesh.link, face, x, y, dx, dy, side
-        )
+        status, face, x, y, dx, dy = shoot(mesh.row, mesh.link, face, x, y, dx, dy, side)
         x, y = x + side * dx, y + side * dy
         if status != ENDED:
             if n == 0:
@@ -91,39 +88,38 @@ def surrounded(grid: Grid, i: int, j: int) -> bool:
 
 
 @kernel
-def ways_from(mesh: Mesh, grid: Grid, i: int, j: int, known: np.ndarray) -> tuple[int, int]:
-    """Most sides that a yarn can go straight on from node (i, j), and in which of the four directions."""
-    best, best_a = 0, 0
-    for a in range(4):
-        di, dj = STEP_I[a], STEP_J[a]
-        if not inside(grid, i + di, j + dj) or grid.marks[i + di, j + dj, STATUS] != UNREACHED:
-            continue
-        if not inside(grid, i - di, j - dj) or not has_piece(grid, i, j, -di, -dj):
-            continue
-        if known[a, i, j] == 0:
-            known[a, i, j] = 1 + sides_ahead(mesh, grid, i, j, di, dj)
-        if known[a, i, j] - 1 > best:
-            best, best_a = known[a, i, j] - 1, a
-    return best, best_a
-
-
-@kernel
-def longest_way_on(
-    mesh: Mesh, grid: Grid, i0: int, j0: int, known: np.ndarray
-) -> tuple[int, int, int, int, int]:
-    """The yarn that can be continued furthest: ``(sides, i, j, di, dj)``; of equals, the nearest to the seed.
+def next_way_on(mesh: Mesh, grid: Grid, i0: int, j0: int, known: np.ndarray) -> tuple[int, int, int, int, int]:
+    """The yarn to continue next: ``(sides, i, j, di, dj)``, sides 0 if there is none.
 
     ``known`` (4, nu, nv) keeps 1 + the sides ahead that were counted before.
     """
-    best, bi, bj, ba, nearest = 0, 0, 0, 0, 0
+    best, bi, bj, ba, nearest = 0, 0, 0, 0, grid.face.size
     for i in range(grid.box[0], grid.box[1] + 1):
         for j in range(grid.box[2], grid.box[3] + 1):
-            if grid.face[i, j] > 0 and not surrounded(grid, i, j):
-                sides, a = ways_from(mesh, grid, i, j, known)
-                away = abs(i - i0) + abs(j - j0)
-                if sides > best or (sides == best and sides > 0 and away < nearest):
+            if grid.face[i, j] == 0 or surrounded(grid, i, j):
+                continue
+            for a in range(4):
+                di, dj = STEP_I[a], STEP_J[a]
+                away = abs(j - j0) if dj == 0 else abs(i - i0)
+                if away > nearest or not leads_on(grid, i, j, di, dj):
+                    continue
+                if known[a, i, j] == 0:
+                    known[a, i, j] = 1 + sides_ahead(mesh, grid, i, j, di, dj)
+                sides = known[a, i, j] - 1
+                if sides > 0 and (away < nearest or sides > best):
                     best, bi, bj, ba, nearest = sides, i, j, a, away
     return best, bi, bj, STEP_I[ba], STEP_J[ba]
+
+
+@inlined
+def leads_on(grid: Grid, i: int, j: int, di: int, dj: int) -> bool:
+    """Whether a yarn arrives at node (i, j) and has not been followed beyond it."""
+    return (
+        inside(grid, i + di, j + dj)
+        and grid.marks[i + di, j + dj, STATUS] == UNREACHED
+        and inside(grid, i - di, j - dj)
+        and has_piece(grid, i, j, -di, -dj)
+    )
 
 
 @kernel
@@ -133,7 +129,7 @@ def carry_front_on(mesh: Mesh, grid: Grid, i0: int, j0: int) -> int:
     continued = 0
     close_everywhere(mesh, grid)
     while True:
-        sides, i, j, di, dj = longest_way_on(mesh, grid, i0, j0, known)
+        sides, i, j, di, dj = next_way_on(mesh, grid, i0, j0, known)
         if sides == 0:
             return continued
         laid = 0

@@ -11,7 +11,6 @@ from geomdrap.fishnet.place import (
     add_piece,
     depart_as,
     departure,
-    has_piece,
     place,
     side_between,
 )
@@ -37,14 +36,22 @@ def inside(grid: Grid, i: int, j: int) -> bool:
 
 @kernel
 def lay_yarn(
-    mesh: Mesh, grid: Grid, i: int, j: int, di: int, dj: int, face: int, x: float, y: float, dx: float, dy: float
+    mesh: Mesh,
+    grid: Grid,
+    i: int,
+    j: int,
+    di: int,
+    dj: int,
+    face: int,
+    x: float,
+    y: float,
+    dx: float,
+    dy: float,
 ) -> bool:
     """Continue a yarn straight on from a point by one side and put node (i + di, j + dj) there."""
     k, m = i + di, j + dj
     side = side_between(grid, i, j, di, dj)
-    status, end, ex, ey, ax, ay, _, _, _ = follow(
-        mesh.row, mesh.link, face, x, y, dx, dy, side
-    )
+    status, end, ex, ey, ax, ay, _, _, _ = follow(mesh.row, mesh.link, face, x, y, dx, dy, side)
     if status != ENDED:
         grid.marks[k, m, STATUS] = IS_OFF_PART
         return False
@@ -124,7 +131,7 @@ def is_open(grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
     if pieces == 15 or (pieces & need) != need:
         return False
     state = grid.marks[k, m, STATUS]
-    return state == UNREACHED or state == PRESENT or state == IS_OFF_PART or state == IS_NOT_CLOSED
+    return state in (UNREACHED, PRESENT, IS_OFF_PART, IS_NOT_CLOSED)
 
 
 @inlined
@@ -152,9 +159,21 @@ def try_cell(mesh: Mesh, grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
     xd, yd = grid.node[i, m, 0], grid.node[i, m, 1]
     lb, ld = side_between(grid, k, j, 0, sv), side_between(grid, i, m, su, 0)
     state, face, x, y, obx, oby, abx, aby, odx, ody, adx, ady = close_cell(
-        mesh.row, mesh.link, mesh.frames,
-        grid.face[k, j] - 1, xb, yb, -(c * px - s * py), -(s * px + c * py), lb,
-        grid.face[i, m] - 1, xd, yd, -(c * qx + s * qy), -(c * qy - s * qx), ld,
+        mesh.row,
+        mesh.link,
+        mesh.frames,
+        grid.face[k, j] - 1,
+        xb,
+        yb,
+        -(c * px - s * py),
+        -(s * px + c * py),
+        lb,
+        grid.face[i, m] - 1,
+        xd,
+        yd,
+        -(c * qx + s * qy),
+        -(c * qy - s * qx),
+        ld,
         sense,
     )
     if known:  # two fronts meet
@@ -181,7 +200,7 @@ def try_cell(mesh: Mesh, grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
 def shadowed(grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
     """Whether the cell from node (i, j) rests on a node that is folded or behind a fold."""
     b, d = grid.marks[i + su, j, STATUS], grid.marks[i, j + sv, STATUS]
-    return b == IS_FOLDED or b == IS_BEHIND_FOLD or d == IS_FOLDED or d == IS_BEHIND_FOLD
+    return b in (IS_FOLDED, IS_BEHIND_FOLD) or d in (IS_FOLDED, IS_BEHIND_FOLD)
 
 
 @kernel

@@ -14,6 +14,11 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 
+def cells_of(nodes: np.ndarray) -> np.ndarray:
+    """The values (nu, nv) of the four corners of each cell, (4, nu - 1, nv - 1)."""
+    return np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]])
+
+
 @dataclass(frozen=True, eq=False)
 class Net:
     """A draped fabric as a net of nodes.
@@ -21,7 +26,8 @@ class Net:
     ``u`` (nu,), ``v`` (nv,) mm from the origin along warp and weft in the flat fabric; ``points`` (nu, nv, 3) mm,
     NaN where there is no node; ``face`` (nu, nv) the face of ``surface`` it lies on, -1 where none; ``status``
     (nu, nv) of ``Status``: why a node is absent; ``status_around`` (nu + 2, nv + 2) the same with a frame of
-    one node more. ``cell_valid`` (nu - 1, nv - 1): the four sides of the cell exist. ``origin`` (3,) mm,
+    one node more. ``cell_valid`` (nu - 1, nv - 1): the four sides of the cell exist. ``lattice`` and
+    ``lattice_valid`` are ``points`` and ``cell_valid`` with the nodes over holes as well. ``origin`` (3,) mm,
     ``warp0``, ``weft0``, ``normal0`` (3,) unit vectors there; ``angle`` degrees; ``pitch`` mm; ``reach`` half
     lengths of the blank, mm. ``notes`` say what was chosen, ``warnings`` what the user should look at.
     """
@@ -42,6 +48,8 @@ class Net:
     face: np.ndarray
     status_around: np.ndarray
     cell_valid: np.ndarray
+    lattice: np.ndarray
+    lattice_valid: np.ndarray
     notes: tuple[str, ...] = field(default=())
     warnings: tuple[str, ...] = field(default=())
 

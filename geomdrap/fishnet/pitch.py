@@ -14,15 +14,21 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 NODES_WANTED = 4000  # enough for maps and patterns, fast enough to try many orientations
+LEAST_PITCH = 1e-8  # of the part's diagonal
 FLAT_RAD = math.radians(1.0)  # facets that meet at less than this count as one plane
 
 
 def choose_pitch(surface: Surface) -> tuple[float, tuple[str, ...]]:
-    """A round pitch in mm that gives some thousand nodes, and the sentence that says so."""
-    wanted = math.sqrt(surface.area / NODES_WANTED)
-    decade = 10.0 ** math.floor(math.log10(wanted))
-    pitch = max(step * decade for step in (1.0, 2.0, 2.5, 5.0) if step * decade <= wanted * (1 + 1e-12))
-    return pitch, (f"pitch {pitch:g} mm chosen from the area of the part (set another with --pitch)",)
+    """A round pitch in mm that gives some thousand nodes and does not go below the facets, and the sentence on it."""
+    by_area = math.sqrt(surface.area / NODES_WANTED)
+    width, area = _curved_widths(surface)
+    order = np.argsort(width)
+    most = np.searchsorted(np.cumsum(area[order]), 0.96 * area.sum()) if len(width) else 0
+    by_facets = float(width[order][min(most, len(width) - 1)]) if len(width) else 0.0
+    least = min(max(by_area, by_facets), surface.diagonal / 20.0)
+    decade = 10.0 ** math.floor(math.log10(least))
+    pitch = min(s * decade for s in (1.0, 2.0, 2.5, 5.0, 10.0) if s * decade >= least * (1 - 1e-9))
+    return pitch, (f"pitch {pitch:g} mm chosen from the part (set another with --pitch)",)
 
 
 def check_pitch(surface: Surface, pitch: float) -> float:
@@ -38,6 +44,11 @@ def check_pitch(surface: Surface, pitch: float) -> float:
             f"a pitch of {pitch:g} mm is larger than {surface.source}, whose diagonal is {surface.diagonal:.6g} mm; "
             "use a smaller one, or check the unit of the part (--unit)"
         )
+    if pitch < LEAST_PITCH * surface.diagonal:
+        raise DrapeError(
+            f"a pitch of {pitch:g} mm is far too small for {surface.source}, whose diagonal is "
+            f"{surface.diagonal:.6g} mm: its nodes would fit into no memory; use a larger one"
+        )
     return pitch
 
 
@@ -51,8 +62,11 @@ def _curved_widths(surface: Surface) -> tuple[np.ndarray, np.ndarray]:
         turn = np.einsum("fk,fnk->fn", surface.normals, surface.normals[np.maximum(beside, 0)])
         bent = ((turn < math.cos(FLAT_RAD)) & (beside >= 0)).any(axis=1)
         corners = surface.unfolded[bent, :3]
-        sides = [corners[:, 0], np.hypot(corners[:, 1], corners[:, 2]),
-                 np.hypot(corners[:, 1] - corners[:, 0], corners[:, 2])]
+        sides = [
+            corners[:, 0],
+            np.hypot(corners[:, 1], corners[:, 2]),
+            np.hypot(corners[:, 1] - corners[:, 0], corners[:, 2]),
+        ]
         _WIDTHS[surface] = 2.0 * surface.areas[bent] / np.max(sides, axis=0), surface.areas[bent]
     return _WIDTHS[surface]
 

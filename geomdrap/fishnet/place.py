@@ -134,10 +134,7 @@ def has_piece(grid: Grid, i: int, j: int, di: int, dj: int) -> bool:
 def departure(grid: Grid, i: int, j: int, di: int, dj: int) -> tuple[float, float]:
     """Direction, in the frame of node (i, j), in which the existing piece toward (i + di, j + dj) leaves it."""
     sign = di + dj
-    if dj == 0:
-        at = WARP_OUT if di > 0 else WARP_IN
-    else:
-        at = WEFT_OUT if dj > 0 else WEFT_IN
+    at = (WARP_OUT if di > 0 else WARP_IN) if dj == 0 else (WEFT_OUT if dj > 0 else WEFT_IN)
     return sign * grid.node[i, j, at], sign * grid.node[i, j, at + 1]
 
 
@@ -145,18 +142,13 @@ def departure(grid: Grid, i: int, j: int, di: int, dj: int) -> tuple[float, floa
 def depart_as(grid: Grid, i: int, j: int, di: int, dj: int, x: float, y: float) -> None:
     """Set the direction in which the piece toward (i + di, j + dj) leaves node (i, j)."""
     sign = di + dj
-    if dj == 0:
-        at = WARP_OUT if di > 0 else WARP_IN
-    else:
-        at = WEFT_OUT if dj > 0 else WEFT_IN
+    at = (WARP_OUT if di > 0 else WARP_IN) if dj == 0 else (WEFT_OUT if dj > 0 else WEFT_IN)
     grid.node[i, j, at] = sign * x
     grid.node[i, j, at + 1] = sign * y
 
 
 @inlined
-def add_piece(
-    grid: Grid, i: int, j: int, di: int, dj: int, ox: float, oy: float, ax: float, ay: float
-) -> None:
+def add_piece(grid: Grid, i: int, j: int, di: int, dj: int, ox: float, oy: float, ax: float, ay: float) -> None:
     """Add the piece from (i, j) to (i + di, j + dj) that leaves in direction o and arrives in direction a."""
     depart_as(grid, i, j, di, dj, ox, oy)
     depart_as(grid, i + di, j + dj, -di, -dj, -ax, -ay)

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.errors import DrapeError
-from geomdrap.geodesic.mesh import mesh_of
 from geomdrap.geodesic.vertex import total_angle, turn_left
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from geomdrap.geodesic.mesh import Mesh
     from geomdrap.surface import Surface
 
     Origin = str | int | Sequence[float] | np.ndarray
@@ -29,7 +29,7 @@ class Seed:
     """Origin of the net: ``face``, ``point`` (3,) mm, unit ``normal``, ``warp`` and ``weft`` (3,) there.
 
     ``starts`` (4,) and ``places`` (4, 4) are the faces, plane points and plane directions with which the
-    half-axes +u, +v, -u, -v leave; ``distance`` mm is how far the point asked for lies from the surface.
+    half-axes +u, +v, -u, -v leave.
     """
 
     face: int
@@ -39,7 +39,6 @@ class Seed:
     weft: np.ndarray
     starts: np.ndarray
     places: np.ndarray
-    distance: float
 
 
 def locate(surface: Surface, origin: Origin) -> tuple[int, np.ndarray, float]:
@@ -70,9 +69,7 @@ def _vertex(surface: Surface, number: int) -> tuple[int, np.ndarray, float]:
     return int(faces[0]), surface.points[vertex], 0.0
 
 
-def heading_frame(
-    surface: Surface, face: int, normal: np.ndarray, reference: np.ndarray | None
-) -> np.ndarray:
+def heading_frame(normal: np.ndarray, reference: Sequence[float] | None) -> np.ndarray:
     """Unit reference direction (3,) in the plane across ``normal``: the part's +x, or +y where x is along it.
 
     Raises DrapeError for a reference direction of the user's that is zero or within 5° of the normal.
@@ -80,7 +77,7 @@ def heading_frame(
     for direction in [np.eye(3)[0], np.eye(3)[1]] if reference is None else [np.asarray(reference, dtype=float)]:
         norm = np.linalg.norm(direction)
         if not (np.isfinite(norm) and norm > 0.0) or direction.shape != (3,):
-            raise DrapeError(f"reference direction {direction} is not a vector of three numbers with a length")
+            raise DrapeError(f"reference direction {reference} is not three numbers that point somewhere")
         if abs(direction @ normal) < ALONG_NORMAL * norm:
             flat = direction - (direction @ normal) * normal
             return flat / np.linalg.norm(flat)
@@ -89,25 +86,25 @@ def heading_frame(
 
 def plant(
     surface: Surface,
-    origin: Origin,
+    point: np.ndarray,
     angle: float,
-    reference: np.ndarray | None = None,
+    mesh: Mesh,
+    reference: Sequence[float] | None = None,
     weft_angle: float = 90.0,
 ) -> Seed:
-    """Seed at an origin with the warp at ``angle`` degrees and the weft ``weft_angle`` degrees beyond it.
+    """Seed at a point (3,) of the surface, the warp at ``angle`` degrees, the weft ``weft_angle`` degrees beyond.
 
     On a vertex the four half-axes share the angles of its faces in proportion, so that opposite ones are one
     straightest line.
     """
-    face, point, distance = locate(surface, origin)
+    face, point, _ = locate(surface, point)
     vertex = _corner_at(surface, face, point)
-    mesh = mesh_of(surface)
     fan = (mesh.row, mesh.link, face, vertex)
     around = total_angle(*fan) if vertex >= 0 else -1.0
     normal = surface.normals[face]
     if around > 0.0:
         normal = surface.vertex_normals[surface.triangles[face, vertex]]
-    across = heading_frame(surface, face, normal, reference)
+    across = heading_frame(normal, reference)
     beside = np.cross(normal, across)
     headings_rad = np.radians(angle + np.array([0.0, weft_angle, 180.0, 180.0 + weft_angle]))
     directions = np.cos(headings_rad)[:, None] * across + np.sin(headings_rad)[:, None] * beside
@@ -123,7 +120,7 @@ def plant(
         places[:, :2] = frame @ (point - surface.origin[face])
         places[:, 2:] = directions @ frame.T
         places[:, 2:] /= np.linalg.norm(places[:, 2:], axis=1, keepdims=True)
-    return Seed(face, point, normal, directions[0], directions[1], starts, places, distance)
+    return Seed(face, point, normal, directions[0], directions[1], starts, places)
 
 
 def _corner_at(surface: Surface, face: int, point: np.ndarray) -> int:
@@ -147,7 +144,12 @@ def _angle_in_fan(
     while True:
         corners = surface.points[surface.triangles[here]]
         first, second = corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]
-        seen.append(math.atan2(normal @ np.cross(direction, first), direction @ first - (direction @ normal) * (normal @ first)))
+        seen.append(
+            math.atan2(
+                normal @ np.cross(direction, first),
+                direction @ first - (direction @ normal) * (normal @ first),
+            )
+        )
         real.append(math.atan2(float(np.linalg.norm(np.cross(first, second))), float(first @ second)))
         over = (k + 2) % 3
         k, here = int(surface.neighbour_edge[here, over]), int(surface.neighbours[here, over])

@@ -9,7 +9,8 @@ edge. A line through a vertex turns by half its deficit from either side, which 
 end point becomes a continuous function of the heading; and beyond the first ring of faces nothing changes.
 
 What is sharp on purpose stays sharp: the tip of a cone, the corner of a box (a deficit that its neighbours do not
-share), and edges much longer than the mesh is fine there.
+share), and edges much longer than the mesh is fine there. And curvature is moved no further than ``reach``, which
+the net sets to a few cells: where facets are larger than that, the net follows them as they are.
 """
 
 from __future__ import annotations
@@ -33,30 +34,20 @@ def corner_angles(r: np.ndarray) -> tuple[float, float, float]:
 
 
 @kernel
-def vertex_sums(
-    triangles: np.ndarray, neighbours: np.ndarray, unfolded: np.ndarray, n: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Angle deficit (n,) radians (0 on the rim), area (n,) mm² and shortest edge (n,) mm of each vertex."""
-    angle = np.zeros(n)
+def vertex_sizes(triangles: np.ndarray, unfolded: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Area (n,) mm² and shortest edge (n,) mm of each vertex."""
     area = np.zeros(n)
     shortest = np.full(n, np.inf)
-    rim = np.zeros(n, np.bool_)
     for f in range(len(triangles)):
         r = unfolded[f]
         third = r[0] * r[2] / 6.0
         lengths = (r[0], math.hypot(r[1] - r[0], r[2]), math.hypot(r[1], r[2]))
-        angles = corner_angles(r)
         for k in range(3):
             a, b = triangles[f, k], triangles[f, (k + 1) % 3]
-            angle[a] += angles[k]
             area[a] += third
             shortest[a] = min(shortest[a], lengths[k])
             shortest[b] = min(shortest[b], lengths[k])
-            if neighbours[f, k] < 0:
-                rim[a] = True
-                rim[b] = True
-    deficit = np.where(rim, 0.0, 2.0 * math.pi - angle)
-    return deficit, area, shortest
+    return area, shortest
 
 
 @kernel
@@ -81,13 +72,21 @@ def smooth_part(triangles: np.ndarray, deficit: np.ndarray, area: np.ndarray) ->
 
 @kernel
 def bends(
-    triangles: np.ndarray, neighbours: np.ndarray, neighbour_edge: np.ndarray, unfolded: np.ndarray, n: int
+    triangles: np.ndarray,
+    neighbours: np.ndarray,
+    neighbour_edge: np.ndarray,
+    unfolded: np.ndarray,
+    deficit: np.ndarray,
+    reach: float,
 ) -> np.ndarray:
     """Turns (m, 3, 2) in radians for lines that leave face f over edge k: at its start, and the fall to its end.
 
+    ``deficit`` (n,) are the angle deficits of the vertices, ``reach`` is the longest edge in mm along which they are
+    spread.
+
     A crossing at share t of the edge, from corner k, turns the line to the left by ``bend[0] - t * bend[1]``.
     """
-    deficit, area, shortest = vertex_sums(triangles, neighbours, unfolded, n)
+    area, shortest = vertex_sizes(triangles, unfolded, len(deficit))
     smooth = smooth_part(triangles, deficit, area)
     out = np.zeros((len(triangles), 3, 2))
     for f in range(len(triangles)):
@@ -96,7 +95,7 @@ def bends(
         angles = corner_angles(r)
         for k in range(3):
             g = neighbours[f, k]
-            if g < 0:
+            if g < 0 or lengths[k] > reach:
                 continue
             a, b = triangles[f, k], triangles[f, (k + 1) % 3]
             beyond = corner_angles(unfolded[g])

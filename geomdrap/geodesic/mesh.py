@@ -63,28 +63,30 @@ def normal_of(frames: np.ndarray, f: int) -> tuple[float, float, float]:
     )
 
 
-_SMOOTH: WeakKeyDictionary[Surface, Mesh] = WeakKeyDictionary()
-_PLAIN: WeakKeyDictionary[Surface, Mesh] = WeakKeyDictionary()
+_MADE: WeakKeyDictionary[Surface, dict[float, Mesh]] = WeakKeyDictionary()
 
 
-def mesh_of(surface: Surface, *, smooth: bool = True) -> Mesh:
-    """The kernels' view of a surface, made once; without ``smooth`` lines stay straight on the very facets."""
-    made = _SMOOTH if smooth else _PLAIN
-    if surface not in made:
-        made[surface] = _make(surface, smooth)
-    return made[surface]
+def mesh_of(surface: Surface, spread: float = 0.0) -> Mesh:
+    """The kernels' view of a surface, kept until another ``spread`` is asked for.
+
+    ``spread`` mm is how far ``bends`` may move curvature; with 0 lines stay straight on the very facets.
+    """
+    made = _MADE.setdefault(surface, {})
+    if spread not in made:
+        made.clear()
+        made[spread] = _make(surface, spread)
+    return made[spread]
 
 
-def _make(surface: Surface, smooth: bool) -> Mesh:
+def _make(surface: Surface, spread: float) -> Mesh:
     unfolded = surface.unfolded
     row = np.zeros((len(unfolded), 24))
     row[:, 2] = unfolded[:, 0]
     row[:, 4:6] = unfolded[:, 1:3]
     row[:, CROSS:BEND] = unfolded[:, 3:15]
-    if smooth:
-        row[:, BEND:] = bends(
-            surface.triangles, surface.neighbours, surface.neighbour_edge, unfolded, len(surface.points)
-        ).reshape(-1, 6)
+    if spread > 0.0:
+        topology = (surface.triangles, surface.neighbours, surface.neighbour_edge, unfolded)
+        row[:, BEND:] = bends(*topology, surface.deficits, spread).reshape(-1, 6)
     link = np.where(surface.neighbours < 0, -1, 4 * surface.neighbours + surface.neighbour_edge)
     frames = np.hstack([surface.origin, surface.e1, surface.e2])
     return Mesh(row, np.ascontiguousarray(link, dtype=np.int32), np.ascontiguousarray(frames))

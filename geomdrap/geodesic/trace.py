@@ -87,10 +87,7 @@ def follow(
             faces = np.concatenate((faces, np.empty_like(faces)))
             points = np.concatenate((points, np.empty_like(points)))
         hit = vertex_ahead(row, face, x, y, dx, dy, left)
-        if entered < 0:
-            k = first_exit(row, face, x, y, dx, dy)
-        else:
-            k = next_exit(row, face, entered, x, y, dx, dy)
+        k = first_exit(row, face, x, y, dx, dy) if entered < 0 else next_exit(row, face, entered, x, y, dx, dy)
         if hit < 0 and not is_beyond(row, face, k, x + left * dx, y + left * dy):
             return ENDED, face, x + left * dx, y + left * dy, dx, dy, 0.0, faces[:count], points[:count]
         faces[count] = face
@@ -111,7 +108,17 @@ def follow(
         points[count] = x + way * dx, y + way * dy
         onward = link[face, k]
         if onward < 0:
-            return LEFT_THE_PART, face, x + way * dx, y + way * dy, dx, dy, left - way, faces[:count], points[:count]
+            return (
+                LEFT_THE_PART,
+                face,
+                x + way * dx,
+                y + way * dy,
+                dx,
+                dy,
+                left - way,
+                faces[:count],
+                points[:count],
+            )
         count += 1
         x, y, dx, dy = turn_at(row, face, k, x, y, dx, dy)
         x, y, dx, dy = step_over(row, face, k, x + way * dx, y + way * dy, dx, dy)
@@ -151,6 +158,8 @@ def trace(
     if not (np.isfinite(length) and length >= 0.0):
         raise DrapeError(f"a geodesic needs a finite length of zero or more, not {length}")
     start = np.asarray(start, dtype=float)
+    if start.shape != (3,) or not np.isfinite(start).all():
+        raise DrapeError(f"the start of a geodesic must be three finite numbers x, y, z in mm, not {start}")
     if face is None:
         near = surface.nearest(start[None])
         face, start = int(near.face[0]), near.point[0]
@@ -159,7 +168,7 @@ def trace(
     norm = float(np.hypot(dx, dy))
     if not norm > 1e-12 * float(np.linalg.norm(direction)):
         raise DrapeError("the direction of a geodesic is zero or along the surface normal; give one that is not")
-    mesh = mesh_of(surface, smooth=False)
+    mesh = mesh_of(surface)
     status, end, ex, ey, edx, edy, left, faces, points = follow(
         mesh.row, mesh.link, face, x, y, dx / norm, dy / norm, length
     )

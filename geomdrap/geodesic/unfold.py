@@ -23,9 +23,11 @@ TOO_MANY_FACES = 2
 # index counts from the end of an array; that check would cost a third of the walk.
 NO_SIGN = 0x3FFFFFFF
 
+OUTSIDE = 1e-12  # of the face's size squared: twice the area by which a point must be beyond an edge to count
+
 # For each of the eight ways in which the corners of a face lie left or right of a line, two bits: the edge that
 # begins right of it and ends left, 3 where there is none. A table, because the branches could not be predicted.
-EXIT_OF_CODE = 0xc58b
+EXIT_OF_CODE = 0xC58B
 
 FACE_LIMIT = 10_000_000  # crossed faces after which a line is called endless
 
@@ -93,6 +95,21 @@ def is_beyond(row: np.ndarray, f: int, k: int, x: float, y: float) -> bool:
     return (row[f, 2 * after(k)] - ax) * (y - ay) - (row[f, 2 * after(k) + 1] - ay) * (x - ax) < 0.0
 
 
+@kernel
+def other_exit(row: np.ndarray, f: int, k: int, entered: int, x: float, y: float) -> int:
+    """The edge that a point on this side of edge k lies beyond all the same, or -1.
+
+    That happens where a line runs along edge k and out over its corner, so that it never crosses that edge.
+    """
+    least = OUTSIDE * (row[f, 2] * row[f, 2] + row[f, 4] * row[f, 4] + row[f, 5] * row[f, 5])
+    for j in (after(k), before(k)):
+        ax, ay = row[f, 2 * j], row[f, 2 * j + 1]
+        ex, ey = row[f, 2 * after(j)] - ax, row[f, 2 * after(j) + 1] - ay
+        if j != entered and ex * (y - ay) - ey * (x - ax) < -least:
+            return j
+    return -1
+
+
 @inlined
 def turn_at(
     row: np.ndarray, f: int, k: int, x: float, y: float, dx: float, dy: float
@@ -129,14 +146,19 @@ def shoot(
     """
     face &= NO_SIGN
     k = first_exit(row, face, x, y, dx, dy)
+    entered = -1
     for _ in range(FACE_LIMIT):
         if not is_beyond(row, face, k, x + length * dx, y + length * dy):
-            return ENDED, face, x, y, dx, dy
+            other = other_exit(row, face, k, entered, x + length * dx, y + length * dy)
+            if other < 0:
+                return ENDED, face, x, y, dx, dy
+            k = other
         onward = link[face, k]
         if onward < 0:
             return LEFT_THE_PART, face, x, y, dx, dy
         x, y, dx, dy = turn_at(row, face, k, x, y, dx, dy)
         x, y, dx, dy = step_over(row, face, k, x, y, dx, dy)
         face = (onward >> 2) & NO_SIGN
-        k = next_exit(row, face, onward & 3, x, y, dx, dy)
+        entered = onward & 3
+        k = next_exit(row, face, entered, x, y, dx, dy)
     return TOO_MANY_FACES, face, x, y, dx, dy

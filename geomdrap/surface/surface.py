@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from geomdrap.errors import SurfaceError
-from geomdrap.surface import defects, topology, unfold
+from geomdrap.surface import defects, lids, topology, unfold
 from geomdrap.surface.findings import Findings
 from geomdrap.surface.inspection import component_sums, inspect
 from geomdrap.surface.nearest import Nearest, NearestTree
@@ -148,6 +148,11 @@ class Surface:
         return _frozen(unfold.vertex_normals(self.points, self.triangles, self.normals))[0]
 
     @cached_property
+    def deficits(self) -> Floats:
+        """Angle deficits at the vertices (n,) radians: 2π less the angles of the faces there; 0 on the rim."""
+        return _frozen(unfold.angle_deficits(self.points, self.triangles, self.neighbours))[0]
+
+    @cached_property
     def area(self) -> float:
         """Area of the whole part, mm²."""
         return float(self.areas.sum())
@@ -185,6 +190,12 @@ class Surface:
         """Closed loops of boundary edges, each (k,) int64 of 3 * face + edge, in the faces' direction."""
         walk, start = topology.boundary_walk(self.triangles, self.neighbours, len(self.points))
         return tuple(_frozen(*np.split(walk, start[1:-1]))) if len(walk) else ()
+
+    @cached_property
+    def lidded(self) -> Surface:
+        """The same part with its holes covered; lids are the faces behind its own. Itself if it has no hole."""
+        mesh = lids.cover(self._mesh, self.boundary_loops, self.normals)
+        return self if mesh is self._mesh else Surface._of(mesh, self.source, self.notes, self.findings)
 
     @cached_property
     def _tree(self) -> NearestTree:

@@ -100,3 +100,22 @@ def vertex_normals(points, triangles, normals):  # type: ignore[no-untyped-def]
         for i in range(3):
             result[j, i] /= max(length, 1e-300)  # zero where opposite normals cancel
     return result
+
+
+@njit(cache=True)
+def angle_deficits(points, triangles, neighbours):  # type: ignore[no-untyped-def]
+    """Angle deficits (n,) radians at the vertices: 2π less the sum of the face angles; 0 on the rim."""
+    out = np.full(len(points), 2.0 * np.pi)
+    rim = np.zeros(len(points), np.bool_)
+    for f in range(len(triangles)):
+        for k in range(3):
+            a, b, c = triangles[f, k], triangles[f, (k + 1) % 3], triangles[f, (k + 2) % 3]
+            ux, uy, uz = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
+            vx, vy, vz = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1], points[c, 2] - points[a, 2]
+            nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+            out[a] -= np.arctan2(np.sqrt(nx * nx + ny * ny + nz * nz), ux * vx + uy * vy + uz * vz)
+            if neighbours[f, k] < 0:
+                rim[a] = True
+                rim[b] = True
+    out[rim] = 0.0
+    return out

@@ -1,0 +1,105 @@
+"""Closed outlines of the draped part of a surface in the flat fabric."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from geomdrap.geodesic.compiled import kernel
+
+SAME = 1e-3  # cells: corners that agree this closely across an edge are joined in the flat fabric
+
+
+@kernel
+def is_open(
+    at: np.ndarray, kind: np.ndarray, neighbours: np.ndarray, neighbour_edge: np.ndarray, f: int, k: int
+) -> bool:
+    """Whether edge k of facet f is an edge of the flat pattern: nothing draped beyond it, or on another sheet."""
+    g = neighbours[f, k]
+    if g < 0 or kind[g] == 0:
+        return True
+    e = neighbour_edge[f, k]
+    for side in range(2):
+        mine, its = (k + side) % 3, (e + 1 - side) % 3
+        if abs(at[f, mine, 0] - at[g, its, 0]) > SAME or abs(at[f, mine, 1] - at[g, its, 1]) > SAME:
+            return True
+    return False
+
+
+@kernel
+def walk_outlines(
+    at: np.ndarray, kind: np.ndarray, neighbours: np.ndarray, neighbour_edge: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Outlines as half-edges ``3·facet + edge`` one after the other, and where each begins (and the end)."""
+    m = len(kind)
+    used = np.zeros(3 * m, np.bool_)
+    walk = np.empty(3 * m, np.int64)
+    begin = np.empty(3 * m + 1, np.int64)
+    count = loops = 0
+    for start in range(3 * m):
+        if used[start] or kind[start // 3] == 0:
+            continue
+        if not is_open(at, kind, neighbours, neighbour_edge, start // 3, start % 3):
+            continue
+        begin[loops] = count
+        loops += 1
+        f, k = start // 3, start % 3
+        while not used[3 * f + k]:
+            used[3 * f + k] = True
+            walk[count] = 3 * f + k
+            count += 1
+            k = (k + 1) % 3
+            while not is_open(at, kind, neighbours, neighbour_edge, f, k):
+                f, k = neighbours[f, k], (neighbour_edge[f, k] + 1) % 3
+    begin[loops] = count
+    return walk[:count], begin[: loops + 1]
+
+
+def outlines(
+    at: np.ndarray, kind: np.ndarray, neighbours: np.ndarray, neighbour_edge: np.ndarray
+) -> list[np.ndarray]:
+    """Closed polygons (k, 2) in cells; counter-clockwise around the fabric, clockwise around openings in it."""
+    walk, begin = walk_outlines(at, kind, neighbours, neighbour_edge)
+    points = at[walk // 3, walk % 3]
+    return [points[a:b] for a, b in pairwise(begin)]
+
+
+def signed_area(polygon: np.ndarray) -> float:
+    """Area of a closed polygon (k, 2), positive if counter-clockwise."""
+    ring = polygon - polygon.mean(axis=0)
+    x, y = ring.T
+    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+
+
+def clip_to_rectangle(polygon: np.ndarray, half: tuple[float, float]) -> np.ndarray:
+    """The part of a closed polygon (k, 2) with |x| ≤ half[0] and |y| ≤ half[1] (Sutherland and Hodgman, 1974)."""
+    for axis in (0, 1):
+        for sign in (1.0, -1.0):
+            if len(polygon) == 0:
+                return polygon
+            over = sign * polygon[:, axis] - half[axis]
+            onward, over_next = np.roll(polygon, -1, axis=0), np.roll(over, -1)
+            crosses = (over > 0.0) != (over_next > 0.0)
+            share = np.where(crosses, over / np.where(crosses, over - over_next, 1.0), 0.0)
+            cut = polygon + share[:, None] * (onward - polygon)
+            keep = np.column_stack([over <= 0.0, crosses])
+            polygon = np.stack([polygon, cut], axis=1)[keep]
+    return polygon
+
+
+def simplify(polygon: np.ndarray, tolerance: float) -> np.ndarray:
+    """Leave out the points of a closed polygon (k, 2) that lie within ``tolerance`` of the line past them."""
+    keep = np.ones(len(polygon), bool)
+    for parity in (0, 1):
+        points = polygon[keep]
+        if len(points) < 6:
+            break
+        before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
+        chord, way = after - before, points - before
+        length = np.maximum(np.hypot(*chord.T), 1e-300)
+        off = np.abs(chord[:, 0] * way[:, 1] - chord[:, 1] * way[:, 0]) / length
+        between = (way * chord).sum(axis=1) * ((points - after) * -chord).sum(axis=1) > 0.0
+        drop = (off <= tolerance) & between & (np.arange(len(points)) % 2 == parity)
+        keep[np.flatnonzero(keep)[drop]] = False
+    return polygon[keep]

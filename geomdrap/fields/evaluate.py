@@ -1,0 +1,134 @@
+"""``evaluate``: from a net to everything that is read from it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.fields.checks import check_net
+from geomdrap.fields.flat import flat_pattern
+from geomdrap.fields.result import Areas, BareRegion, Drape, ShearStatistics
+from geomdrap.fields.trim import Trimmed, trim
+from geomdrap.fishnet import Status
+
+if TYPE_CHECKING:
+    from geomdrap.fishnet import Net
+
+LEAST_BARE = 1e-4  # of the part: smaller bare specks are counted in the coverage but not listed
+
+
+def evaluate(net: Net, limit_angle: float | None = None) -> Drape:
+    """Fields, flat pattern, areas, bare regions, statistics and checks of a net.
+
+    ``limit_angle`` degrees; the fabric's own if None. Raises DrapeError for a limit angle out of range.
+    """
+    from dataclasses import replace
+
+    limit = (
+        net.fabric.limit_angle if limit_angle is None else replace(net.fabric, limit_angle=limit_angle).limit_angle
+    )
+    trimmed = trim(net)
+    warp, weft = unit_directions(trimmed)
+    shear = np.degrees(np.arcsin(np.clip((warp * weft).sum(axis=1), -1.0, 1.0)))
+    faces = _per_face(net, trimmed, warp, weft)
+    return Drape(
+        net=net,
+        limit_angle=limit,
+        **faces,
+        flat=flat_pattern(net, trimmed, limit),
+        area=areas(trimmed),
+        bare=bare_regions(trimmed),
+        statistics=statistics(net, trimmed, shear, limit),
+        checks=check_net(net, trimmed),
+    )
+
+
+def unit_directions(trimmed: Trimmed) -> tuple[np.ndarray, np.ndarray]:
+    """Unit warp and weft directions (m, 3) of the split facets."""
+    length = np.linalg.norm(trimmed.tangent, axis=2, keepdims=True)
+    unit = trimmed.tangent / np.where(length > 0.0, length, 1.0)
+    return unit[:, 0], unit[:, 1]
+
+
+def areas(trimmed: Trimmed) -> Areas:
+    """Areas of the part, of the draped part and of the fabric on it."""
+    part = float(trimmed.area.sum())
+    draped = float((trimmed.area * trimmed.share).sum())
+    a, b, c = trimmed.at.swapaxes(0, 1)
+    flat = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    fabric = float(np.where(trimmed.share > 0.0, flat * trimmed.share, 0.0).sum())
+    return Areas(part, draped, fabric, draped / part)
+
+
+def _per_face(net: Net, trimmed: Trimmed, warp: np.ndarray, weft: np.ndarray) -> dict[str, np.ndarray]:
+    """Fields on the part's own facets: area-weighted over the pieces of each."""
+    m = len(net.surface.triangles)
+    parent, on = trimmed.mesh.parent, trimmed.kind > 0
+    weight = trimmed.area * trimmed.share
+
+    def mean(values: np.ndarray) -> np.ndarray:
+        total = np.column_stack([np.bincount(parent[on], (values[on, k] * weight[on]), m) for k in range(3)])
+        length = np.linalg.norm(total, axis=1, keepdims=True)
+        return np.where(length > 0.0, total / np.where(length > 0.0, length, 1.0), np.nan)
+
+    face_warp, face_weft = mean(warp), mean(weft)
+    sine = np.clip((face_warp * face_weft).sum(axis=1), -1.0, 1.0)
+    factor = 1.0 / np.sqrt(np.maximum(1.0 - sine**2, 1e-12))
+    covered = np.bincount(parent, weight, m) / np.bincount(parent, trimmed.area, m)
+    reason = np.full(m, np.uint8(Status.PRESENT))
+    reason[parent[~on]] = trimmed.reason[~on]
+    return {
+        "face_shear": np.degrees(np.arcsin(sine)),
+        "face_warp": face_warp,
+        "face_weft": face_weft,
+        "face_thickness": factor,
+        "face_fibre_volume": factor.copy(),
+        "face_coverage": np.clip(covered, 0.0, 1.0),
+        "face_reason": np.where(covered > 0.5, np.uint8(Status.PRESENT), reason),
+    }
+
+
+def bare_regions(trimmed: Trimmed) -> tuple[BareRegion, ...]:
+    """Connected bare stretches, the largest first, each with the reason that most of it has."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    bare = trimmed.kind == 0
+    if not bare.any():
+        return ()
+    rows, k = np.nonzero((trimmed.mesh.neighbours >= 0) & bare[:, None])
+    beside = trimmed.mesh.neighbours[rows, k]
+    both = bare[beside]
+    n = len(bare)
+    graph = coo_array((np.ones(both.sum(), np.int8), (rows[both], beside[both])), shape=(n, n))
+    label = connected_components(graph, directed=False)[1]
+    regions = []
+    middle = trimmed.mesh.points[trimmed.mesh.triangles].mean(axis=1)
+    least = LEAST_BARE * trimmed.area.sum()
+    sizes = np.bincount(label[bare], trimmed.area[bare], n)
+    for group in np.flatnonzero(sizes > least):
+        members = np.flatnonzero((label == group) & bare)
+        area = trimmed.area[members]
+        center = (middle[members] * area[:, None]).sum(axis=0) / area.sum()
+        on_it = middle[members[np.linalg.norm(middle[members] - center, axis=1).argmin()]]
+        weight = np.bincount(trimmed.reason[members], area)
+        regions.append(BareRegion(float(area.sum()), on_it, Status(int(weight.argmax())).reason))
+    return tuple(sorted(regions, key=lambda r: -r.area))
+
+
+def statistics(net: Net, trimmed: Trimmed, shear: np.ndarray, limit: float) -> ShearStatistics:
+    """Shear statistics: the largest of the cells, the rest weighted by area of the part."""
+    on = trimmed.share > 0.0
+    size, weight = np.abs(shear[on]), (trimmed.area * trimmed.share)[on]
+    if not on.any() or not np.isfinite(net.cell_shear).any():
+        return ShearStatistics(0.0, 0.0, 0.0, 0.0, 0.0)
+    order = np.argsort(size)
+    cumulated = np.cumsum(weight[order]) / weight.sum()
+    return ShearStatistics(
+        max=float(np.nanmax(np.abs(net.cell_shear))),
+        p95=float(size[order][min(np.searchsorted(cumulated, 0.95), len(order) - 1)]),
+        mean=float((size * weight).sum() / weight.sum()),
+        over_half_limit=float(weight[size > 0.5 * limit].sum() / weight.sum()),
+        over_limit=float(weight[size > limit].sum() / weight.sum()),
+    )

@@ -1,0 +1,251 @@
+"""Fabric coordinates over the whole part: by the net where it is, by its yarn directions in the strip beyond.
+
+The net ends up to a cell before the rim of the part. In the strip between, facets continue the yarn directions and
+the shear of the facet before them, turned over the edge between the two: exact where the part can be unrolled, second
+order in the pitch elsewhere. Coordinates belong to the corners of facets, not to vertices, so that a net that meets
+itself may differ on the two sides of the seam.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from geomdrap.fields.locate import locate
+from geomdrap.geodesic.compiled import kernel
+
+BARE, BY_NET, BEYOND = 0, 1, 2
+JUMP = 0.4  # cells: neighbouring values that differ by this much more than they can belong to two sheets
+BEYOND_NET = 2  # cells: corners of the part turned to the yarns stick out by more than one
+MOST_SHEARED = 12.0  # a cell sheared to 85° is that much shorter across than its sides
+
+
+@kernel
+def unit(v: np.ndarray) -> np.ndarray:
+    """A vector made a unit vector."""
+    return v / math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+
+
+@kernel
+def fits(points: np.ndarray, triangle: np.ndarray, at: np.ndarray, side: float) -> bool:
+    """Whether the coordinates (3, 2) of a facet's corners can belong to one sheet of the net."""
+    for k in range(3):
+        m = (k + 1) % 3
+        length = 0.0
+        for c in range(3):
+            length += (points[triangle[k], c] - points[triangle[m], c]) ** 2
+        most = MOST_SHEARED * math.sqrt(length) / side + JUMP
+        if abs(at[k, 0] - at[m, 0]) > most or abs(at[k, 1] - at[m, 1]) > most:
+            return False
+    return True
+
+
+@kernel
+def by_net(
+    points: np.ndarray,
+    triangles: np.ndarray,
+    neighbours: np.ndarray,
+    lattice: np.ndarray,
+    valid: np.ndarray,
+    starts: np.ndarray,
+    start_pq: np.ndarray,
+    side: float,
+) -> np.ndarray:
+    """Fabric coordinates (n, 2) in cells of all vertices that lie in valid cells, NaN elsewhere.
+
+    ``starts`` (k,) are facets with a known coordinate ``start_pq`` (k, 2) on or near them (nodes of the net).
+    """
+    at = np.full((len(points), 2), np.nan)
+    seen = np.zeros(len(triangles), np.bool_)
+    queue = np.empty(len(triangles), np.int64)
+    for n in range(len(starts)):
+        if seen[starts[n]]:
+            continue
+        head, tail = 0, 1
+        queue[0] = starts[n]
+        seen[starts[n]] = True
+        first = True
+        while head < tail:
+            f = queue[head]
+            head += 1
+            p, q = start_pq[n, 0], start_pq[n, 1]
+            reached = first
+            for k in range(3):
+                if not math.isnan(at[triangles[f, k], 0]):
+                    p, q = at[triangles[f, k], 0], at[triangles[f, k], 1]
+                    reached = True
+            first = False
+            for k in range(3):
+                v = triangles[f, k]
+                if reached and math.isnan(at[v, 0]):
+                    found, a, b = locate(lattice, valid, p, q, points[v, 0], points[v, 1], points[v, 2], side)
+                    if found:
+                        at[v, 0], at[v, 1] = a, b
+                        p, q = a, b
+            for k in range(3):
+                g = neighbours[f, k]
+                known = not math.isnan(at[triangles[f, k], 0]) or not math.isnan(at[triangles[f, (k + 1) % 3], 0])
+                if g >= 0 and not seen[g] and known:
+                    seen[g] = True
+                    queue[tail] = g
+                    tail += 1
+    return at
+
+
+@kernel
+def tangents_at(p: float, q: float, warp: np.ndarray, weft: np.ndarray, out: np.ndarray) -> None:
+    """Interpolate the yarn tangents of the nodes (nu, nv, 3) at (p, q) into ``out`` (2, 3)."""
+    nu, nv = warp.shape[:2]
+    i = min(max(int(math.floor(p)), 0), nu - 2)
+    j = min(max(int(math.floor(q)), 0), nv - 2)
+    s, t = min(max(p - i, 0.0), 1.0), min(max(q - j, 0.0), 1.0)
+    for k in range(3):
+        total = a = b = 0.0
+        for di in range(2):
+            for dj in range(2):
+                w = (s if di else 1 - s) * (t if dj else 1 - t)
+                if not math.isnan(warp[i + di, j + dj, k]) and not math.isnan(weft[i + di, j + dj, k]):
+                    a += w * warp[i + di, j + dj, k]
+                    b += w * weft[i + di, j + dj, k]
+                    total += w
+        out[0, k] = a / total if total > 0.0 else math.nan
+        out[1, k] = b / total if total > 0.0 else math.nan
+
+
+@kernel
+def lay_flat(tangent: np.ndarray, normal: np.ndarray) -> None:
+    """Take the part along ``normal`` out of the tangents (2, 3), keeping their lengths."""
+    for n in range(2):
+        before = math.sqrt((tangent[n] * tangent[n]).sum())
+        tangent[n] -= (tangent[n] * normal).sum() * normal
+        after = math.sqrt((tangent[n] * tangent[n]).sum())
+        if after > 0.0:
+            tangent[n] *= before / after
+
+
+@kernel
+def turn_over_edge(
+    tangent: np.ndarray, edge: np.ndarray, normal: np.ndarray, beyond: np.ndarray, out: np.ndarray
+) -> None:
+    """Turn tangents (2, 3) of a facet about an edge into the plane of the facet beyond it."""
+    e = unit(edge)
+    here, there = np.cross(normal, e), np.cross(beyond, e)
+    for n in range(2):
+        out[n] = (tangent[n] * e).sum() * e + (tangent[n] * here).sum() * there
+
+
+@kernel
+def steps_of(tangent: np.ndarray, way: np.ndarray) -> tuple[float, float]:
+    """Components (cells) of a way in the plane of the tangents (2, 3), which are mm per cell."""
+    aa = (tangent[0] * tangent[0]).sum()
+    ab = (tangent[0] * tangent[1]).sum()
+    bb = (tangent[1] * tangent[1]).sum()
+    ar, br = (tangent[0] * way).sum(), (tangent[1] * way).sum()
+    det = aa * bb - ab * ab
+    if det <= 1e-9 * aa * bb:
+        return math.nan, math.nan
+    return (bb * ar - ab * br) / det, (aa * br - ab * ar) / det
+
+
+@kernel
+def why_not(valid: np.ndarray, status: np.ndarray, refused: np.ndarray, p: float, q: float) -> int:
+    """0 where the strip beyond the net may reach (p, q), else the status that stops it.
+
+    It may reach BEYOND_NET cells further than the net, but not past a fold. ``status`` (nu + 2, nv + 2) has a
+    frame of one node; ``refused`` (16,) says which statuses stop the strip.
+    """
+    if math.isnan(p) or math.isnan(q):
+        return 9
+    i, j = int(math.floor(p)), int(math.floor(q))
+    stop = 9
+    for k in range(max(i, -1), min(i + 2, status.shape[0] - 1)):
+        for m in range(max(j, -1), min(j + 2, status.shape[1] - 1)):
+            s = status[k + 1, m + 1]
+            if refused[s]:
+                return s
+    for k in range(max(i - BEYOND_NET, 0), min(i + BEYOND_NET + 1, valid.shape[0])):
+        for m in range(max(j - BEYOND_NET, 0), min(j + BEYOND_NET + 1, valid.shape[1])):
+            if valid[k, m]:
+                stop = 0
+    return stop
+
+
+@kernel
+def continue_beyond(
+    points: np.ndarray,
+    triangles: np.ndarray,
+    neighbours: np.ndarray,
+    neighbour_edge: np.ndarray,
+    normals: np.ndarray,
+    vertex_at: np.ndarray,
+    warp: np.ndarray,
+    weft: np.ndarray,
+    valid: np.ndarray,
+    status: np.ndarray,
+    refused: np.ndarray,
+    side: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Coordinates at the corners of all facets, in the net and in the strip beyond it.
+
+    Returns ``at`` (m, 3, 2) cells, ``kind`` (m,) BARE, BY_NET or BEYOND, ``tangent`` (m, 2, 3) mm per cell along warp
+    and weft in the facet's plane, and ``stopped`` (m,), the status that keeps a facet bare.
+    """
+    m = len(triangles)
+    at = np.full((m, 3, 2), np.nan)
+    kind = np.zeros(m, np.uint8)
+    stopped = np.zeros(m, np.uint8)
+    tangent = np.full((m, 2, 3), np.nan)
+    queue = np.empty(m, np.int64)
+    tail = 0
+    for f in range(m):
+        for k in range(3):
+            at[f, k] = vertex_at[triangles[f, k]]
+        if np.isnan(at[f]).any() or not fits(points, triangles[f], at[f], side):
+            at[f] = np.nan
+            continue
+        tangents_at(at[f, :, 0].mean(), at[f, :, 1].mean(), warp, weft, tangent[f])
+        if np.isnan(tangent[f]).any():
+            at[f] = np.nan
+            continue
+        lay_flat(tangent[f], normals[f])
+        kind[f] = BY_NET
+        queue[tail] = f
+        tail += 1
+    head = 0
+    while head < tail:
+        f = queue[head]
+        head += 1
+        for k in range(3):
+            g = neighbours[f, k]
+            if g < 0 or kind[g] != BARE:
+                continue
+            e = neighbour_edge[f, k]
+            a, b = (k + 1) % 3, k  # corners of f where corners e and e + 1 of g are
+            at[g, e], at[g, (e + 1) % 3] = at[f, a], at[f, b]
+            edge = points[triangles[f, a]] - points[triangles[f, b]]
+            turn_over_edge(tangent[f], edge, normals[f], normals[g], tangent[g])
+            o = (e + 2) % 3
+            third = points[triangles[g, o]]
+            p1, q1 = steps_of(tangent[g], third - points[triangles[g, e]])
+            p2, q2 = steps_of(tangent[g], third - points[triangles[g, (e + 1) % 3]])
+            p = 0.5 * (p1 + at[g, e, 0] + p2 + at[g, (e + 1) % 3, 0])
+            q = 0.5 * (q1 + at[g, e, 1] + q2 + at[g, (e + 1) % 3, 1])
+            known = vertex_at[triangles[g, o]]
+            if not math.isnan(known[0]) and abs(known[0] - p) < JUMP and abs(known[1] - q) < JUMP:
+                p, q = known[0], known[1]
+                stop = 0
+            else:
+                stop = why_not(valid, status, refused, p, q)
+            if stop != 0:
+                at[g] = np.nan
+                tangent[g] = np.nan
+                stopped[g] = stop
+                continue
+            at[g, o, 0], at[g, o, 1] = p, q
+            if math.isnan(known[0]):
+                vertex_at[triangles[g, o], 0], vertex_at[triangles[g, o], 1] = p, q
+            kind[g] = BEYOND
+            queue[tail] = g
+            tail += 1
+    return at, kind, tangent, stopped

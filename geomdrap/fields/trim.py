@@ -1,0 +1,154 @@
+"""The net cut to the part: which of it is draped, where in the flat fabric, in which directions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.fields.refine import Refined, refine
+from geomdrap.fields.spread import by_net, continue_beyond
+from geomdrap.fishnet import Status
+
+if TYPE_CHECKING:
+    from geomdrap.fishnet import Net
+
+REFUSED = np.zeros(16, np.bool_)
+REFUSED[[Status.FOLDED, Status.BEHIND_FOLD, Status.NOT_CLOSED]] = True
+
+
+@dataclass(frozen=True, eq=False)
+class Trimmed:
+    """Facets of the part, split to the pitch, with the fabric on them.
+
+    ``mesh``; ``at`` (m, 3, 2) mm in the flat fabric per corner, NaN where bare; ``kind`` (m,) 0 where bare;
+    ``tangent`` (m, 2, 3) along warp and weft, mm of surface per mm of fabric; ``area`` (m,) mm²; ``share`` (m,) of
+    each facet that lies within the blank, 0 where bare; ``reason`` (m,) a Status.
+    """
+
+    mesh: Refined
+    at: np.ndarray
+    kind: np.ndarray
+    tangent: np.ndarray
+    area: np.ndarray
+    share: np.ndarray
+    reason: np.ndarray
+
+
+def trim(net: Net) -> Trimmed:
+    """Spread the net's fabric coordinates over the part, out to its rim or to the blank's."""
+    part = net.surface
+    mesh = refine(part.points, part.triangles, part.neighbours, part.neighbour_edge, net.pitch)
+    cross = np.cross(
+        mesh.points[mesh.triangles[:, 1]] - mesh.points[mesh.triangles[:, 0]],
+        mesh.points[mesh.triangles[:, 2]] - mesh.points[mesh.triangles[:, 0]],
+    )
+    area = 0.5 * np.linalg.norm(cross, axis=1)
+    m = len(area)
+    if min(net.lattice_valid.shape) == 0:
+        return _all_bare(mesh, area, Status.TOO_NARROW)
+    starts, start_pq = _starts(net, mesh)
+    vertex_at = by_net(
+        mesh.points,
+        mesh.triangles,
+        mesh.neighbours,
+        net.lattice,
+        net.lattice_valid,
+        starts,
+        start_pq,
+        net.pitch,
+    )
+    warp, weft = node_tangents(net.lattice)
+    at, kind, tangent, stopped = continue_beyond(
+        mesh.points, mesh.triangles, mesh.neighbours, mesh.neighbour_edge, part.normals[mesh.parent],
+        vertex_at, warp, weft, net.lattice_valid, net.status_around, REFUSED, net.pitch,
+    )  # fmt: skip
+    at = np.array([net.u[0], net.v[0]]) + at * net.pitch
+    share = (kind > 0).astype(float)
+    reason = np.where(kind > 0, np.uint8(Status.PRESENT), np.where(stopped > 0, stopped, np.uint8(Status.UNREACHED)))
+    if net.reach is not None:
+        share *= _share_in_blank(at, net.reach)
+        reason = np.where((kind > 0) & (share == 0.0), np.uint8(Status.BLANK), reason)
+        kind = np.where(share > 0.0, kind, 0).astype(np.uint8)
+    reason = _spread_reasons(reason, mesh.neighbours, net)
+    assert len(reason) == m
+    return Trimmed(mesh, at, kind, tangent / net.pitch, area, share, reason)
+
+
+def _all_bare(mesh: Refined, area: np.ndarray, why: Status) -> Trimmed:
+    m = len(area)
+    return Trimmed(
+        mesh, np.full((m, 3, 2), np.nan), np.zeros(m, np.uint8), np.full((m, 2, 3), np.nan), area, np.zeros(m),
+        np.full(m, np.uint8(why)),
+    )  # fmt: skip
+
+
+def _starts(net: Net, mesh: Refined) -> tuple[np.ndarray, np.ndarray]:
+    """Facets of nodes and their coordinates in cells, the seed's first, from which the walks begin."""
+    i, j = np.nonzero(net.face >= 0)
+    nearest_first = np.argsort(np.hypot(net.u[i], net.v[j]), kind="stable")
+    i, j = i[nearest_first], j[nearest_first]
+    faces = net.face[i, j]
+    if len(mesh.parent) == len(net.surface.triangles):
+        return faces.astype(np.int64), np.column_stack([i, j]).astype(float)
+    order = np.argsort(mesh.parent, kind="stable")
+    begin = np.searchsorted(mesh.parent[order], faces)
+    count = np.searchsorted(mesh.parent[order], faces, side="right") - begin
+    within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    # only the nearest of a split facet's pieces, or large facets would be searched from every node on them
+    pieces = order[np.repeat(begin, count) + within]
+    owner = np.repeat(np.arange(len(faces)), count)
+    middle = mesh.points[mesh.triangles[pieces]].mean(axis=1)
+    away = np.linalg.norm(middle - net.points[i, j][owner], axis=1)
+    ranked = np.lexsort((away, owner))
+    first = ranked[np.unique(owner[ranked], return_index=True)[1]]
+    return pieces[first], np.column_stack([i, j]).astype(float)
+
+
+def node_tangents(lattice: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Vectors along warp and weft at the nodes (nu, nv, 3), mm per cell: central, one-sided at the net's border."""
+    return _difference(lattice), _difference(lattice.swapaxes(0, 1)).swapaxes(0, 1)
+
+
+def _difference(nodes: np.ndarray) -> np.ndarray:
+    """Difference along the first axis, over the neighbours that are there; unit pieces give equal weights."""
+    step = np.diff(nodes, axis=0)
+    gap = np.full((1, *nodes.shape[1:]), np.nan)
+    pieces = np.stack([np.concatenate([gap, step]), np.concatenate([step, gap])])
+    there = np.isfinite(pieces[..., 0])
+    total = np.where(there[..., None], pieces, 0.0).sum(axis=0)
+    count = there.sum(axis=0)
+    return np.where(count[..., None] > 0, total / np.maximum(count, 1)[..., None], np.nan)
+
+
+def _share_in_blank(at: np.ndarray, reach: tuple[float, float]) -> np.ndarray:
+    """Share (m,) of each flat facet (m, 3, 2) within |u| ≤ reach[0], |v| ≤ reach[1]."""
+    from geomdrap.fields.contour import clip_to_rectangle, signed_area
+
+    size = np.abs(at).max(axis=1)
+    inside = (size[:, 0] <= reach[0]) & (size[:, 1] <= reach[1])
+    share = inside.astype(float)
+    least = np.abs(np.where(np.sign(at).min(axis=1) * np.sign(at).max(axis=1) > 0, np.abs(at).min(axis=1), 0.0))
+    for f in np.flatnonzero(~inside & (least[:, 0] < reach[0]) & (least[:, 1] < reach[1])):
+        cut = clip_to_rectangle(at[f], reach)
+        whole = signed_area(at[f])
+        share[f] = signed_area(cut) / whole if len(cut) and whole > 0.0 else 0.0
+    return share
+
+
+def _spread_reasons(reason: np.ndarray, neighbours: np.ndarray, net: Net) -> np.ndarray:
+    """Give bare facets that nothing stopped at the reason of the bare facets beside them."""
+    unknown = reason == Status.UNREACHED
+    while unknown.any():
+        rows = np.flatnonzero(unknown)
+        beside = neighbours[rows]
+        theirs = np.where(beside >= 0, reason[np.maximum(beside, 0)], Status.UNREACHED)
+        theirs = np.where(theirs == Status.PRESENT, np.uint8(Status.UNREACHED), theirs)
+        found = theirs.max(axis=1)
+        if not (found > 0).any():
+            break
+        reason = reason.copy()
+        reason[rows] = found
+        unknown = reason == Status.UNREACHED
+    return reason
