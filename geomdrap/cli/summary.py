@@ -42,7 +42,7 @@ def _checks(result: Drape) -> Iterator[str]:
     """Name the checks that could be made on this part."""
     checks = result.checks
     for what, size in (
-        ("edges off by", f"{checks.edge_error:.1g} mm"),
+        ("sides too long by", f"{checks.edge_error:.1g} of the pitch"),
         ("nodes off the surface by", f"{checks.off_surface:.1g} mm"),
         ("shear off the curvature by", f"{checks.curvature_residual:.2g}°"),
     ):

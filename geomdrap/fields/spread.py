@@ -94,34 +94,44 @@ def by_net(
 
 
 @kernel
-def tangents_at(p: float, q: float, warp: np.ndarray, weft: np.ndarray, out: np.ndarray) -> None:
-    """Interpolate the yarn tangents of the nodes (nu, nv, 3) at (p, q) into ``out`` (2, 3)."""
-    nu, nv = warp.shape[:2]
-    i = min(max(int(math.floor(p)), 0), nu - 2)
-    j = min(max(int(math.floor(q)), 0), nv - 2)
-    s, t = min(max(p - i, 0.0), 1.0), min(max(q - j, 0.0), 1.0)
-    for k in range(3):
-        total = a = b = 0.0
-        for di in range(2):
-            for dj in range(2):
-                w = (s if di else 1 - s) * (t if dj else 1 - t)
-                if not math.isnan(warp[i + di, j + dj, k]) and not math.isnan(weft[i + di, j + dj, k]):
-                    a += w * warp[i + di, j + dj, k]
-                    b += w * weft[i + di, j + dj, k]
-                    total += w
-        out[0, k] = a / total if total > 0.0 else math.nan
-        out[1, k] = b / total if total > 0.0 else math.nan
+def turn_into_plane(v: np.ndarray, normal: np.ndarray, other: np.ndarray, out: np.ndarray) -> None:
+    """Turn a vector of the plane across ``normal`` into that across ``other`` the shortest way, adding to ``out``."""
+    axis = np.cross(normal, other)
+    cosine = (normal * other).sum()
+    if cosine < -0.99:  # back to back: there is no shortest way, and no net lies so
+        out += math.nan
+        return
+    # Rodrigues' rotation, with (1 - cos) / sin² = 1 / (1 + cos)
+    out += cosine * v + np.cross(axis, v) + axis * ((axis * v).sum() / (1.0 + cosine))
 
 
 @kernel
-def lay_flat(tangent: np.ndarray, normal: np.ndarray) -> None:
-    """Take the part along ``normal`` out of the tangents (2, 3), keeping their lengths."""
+def tangents_at(p: float, q: float, yarns: np.ndarray, normal: np.ndarray, side: float, out: np.ndarray) -> None:
+    """Yarn tangents (2, 3), mm per cell, at (p, q) in the plane across ``normal``.
+
+    The directions ``yarns`` (2, nu, nv, 3) of the four nodes around are turned into that plane one by one, so that
+    a bend between them does not look like shear.
+    """
+    nu, nv = yarns.shape[1:3]
+    i = min(max(int(math.floor(p)), 0), nu - 2)
+    j = min(max(int(math.floor(q)), 0), nv - 2)
+    s, t = min(max(p - i, 0.0), 1.0), min(max(q - j, 0.0), 1.0)
+    out[:] = 0.0
+    turned = np.empty(3)
+    for di in range(2):
+        for dj in range(2):
+            warp, weft = yarns[0, i + di, j + dj].astype(np.float64), yarns[1, i + di, j + dj].astype(np.float64)
+            if math.isnan(warp[0]) or math.isnan(weft[0]):
+                continue
+            own = unit(np.cross(warp, weft))
+            weight = (s if di else 1 - s) * (t if dj else 1 - t)
+            for n in range(2):
+                turned[:] = 0.0
+                turn_into_plane(warp if n == 0 else weft, own, normal, turned)
+                out[n] += weight * turned
     for n in range(2):
-        before = math.sqrt((tangent[n] * tangent[n]).sum())
-        tangent[n] -= (tangent[n] * normal).sum() * normal
-        after = math.sqrt((tangent[n] * tangent[n]).sum())
-        if after > 0.0:
-            tangent[n] *= before / after
+        length = math.sqrt((out[n] * out[n]).sum())
+        out[n] *= side / length if length > 0.0 else math.nan
 
 
 @kernel
@@ -179,8 +189,7 @@ def continue_beyond(
     neighbour_edge: np.ndarray,
     normals: np.ndarray,
     vertex_at: np.ndarray,
-    warp: np.ndarray,
-    weft: np.ndarray,
+    yarns: np.ndarray,
     valid: np.ndarray,
     status: np.ndarray,
     refused: np.ndarray,
@@ -204,11 +213,10 @@ def continue_beyond(
         if np.isnan(at[f]).any() or not fits(points, triangles[f], at[f], side):
             at[f] = np.nan
             continue
-        tangents_at(at[f, :, 0].mean(), at[f, :, 1].mean(), warp, weft, tangent[f])
+        tangents_at(at[f, :, 0].mean(), at[f, :, 1].mean(), yarns, normals[f], side, tangent[f])
         if np.isnan(tangent[f]).any():
             at[f] = np.nan
             continue
-        lay_flat(tangent[f], normals[f])
         kind[f] = BY_NET
         queue[tail] = f
         tail += 1

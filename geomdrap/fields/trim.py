@@ -59,10 +59,9 @@ def trim(net: Net) -> Trimmed:
         start_pq,
         net.pitch,
     )
-    warp, weft = node_tangents(net.lattice)
     at, kind, tangent, stopped = continue_beyond(
         mesh.points, mesh.triangles, mesh.neighbours, mesh.neighbour_edge, part.normals[mesh.parent],
-        vertex_at, warp, weft, net.lattice_valid, net.status_around, REFUSED, net.pitch,
+        vertex_at, net.yarns, net.lattice_valid, net.status_around, REFUSED, net.pitch,
     )  # fmt: skip
     at = np.array([net.u[0], net.v[0]]) + at * net.pitch
     share = (kind > 0).astype(float)
@@ -104,22 +103,6 @@ def _starts(net: Net, mesh: Refined) -> tuple[np.ndarray, np.ndarray]:
     ranked = np.lexsort((away, owner))
     first = ranked[np.unique(owner[ranked], return_index=True)[1]]
     return pieces[first], np.column_stack([i, j]).astype(float)
-
-
-def node_tangents(lattice: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Vectors along warp and weft at the nodes (nu, nv, 3), mm per cell: central, one-sided at the net's border."""
-    return _difference(lattice), _difference(lattice.swapaxes(0, 1)).swapaxes(0, 1)
-
-
-def _difference(nodes: np.ndarray) -> np.ndarray:
-    """Difference along the first axis, over the neighbours that are there; unit pieces give equal weights."""
-    step = np.diff(nodes, axis=0)
-    gap = np.full((1, *nodes.shape[1:]), np.nan)
-    pieces = np.stack([np.concatenate([gap, step]), np.concatenate([step, gap])])
-    there = np.isfinite(pieces[..., 0])
-    total = np.where(there[..., None], pieces, 0.0).sum(axis=0)
-    count = there.sum(axis=0)
-    return np.where(count[..., None] > 0, total / np.maximum(count, 1)[..., None], np.nan)
 
 
 def _share_in_blank(at: np.ndarray, reach: tuple[float, float]) -> np.ndarray:

@@ -18,6 +18,7 @@ from geomdrap.fishnet.march import fill_quadrants, lay_generators
 from geomdrap.fishnet.net import Net, cells_of
 from geomdrap.fishnet.pitch import check_pitch, choose_pitch, coarse_facets
 from geomdrap.fishnet.place import all_in_space, place_seed
+from geomdrap.fishnet.shear import shears, yarn_directions
 from geomdrap.geodesic.mesh import Mesh, mesh_of
 
 if TYPE_CHECKING:
@@ -131,6 +132,7 @@ def _as_net(
         points = np.where(over_hole[..., None], np.nan, lattice)
         face = np.where(over_hole, -1, face)
         valid = lattice_valid & np.isfinite(cells_of(points[..., 0])).all(axis=0)
+    cell_shear, shear = shears(grid, i0, j0, valid)
     if part is not surface:
         others = surface.n_components - 1
         notes = (*notes, f"the part has {others + 1} separate pieces; the one with the origin is draped")
@@ -153,6 +155,9 @@ def _as_net(
         cell_valid=valid,
         lattice=lattice,
         lattice_valid=lattice_valid,
+        yarns=yarn_directions(mesh, grid, i0, i1 + 1, j0, j1 + 1),
+        cell_shear=cell_shear,
+        shear=shear,
         notes=notes,
         warnings=coarse_facets(part, pitch),
     )

@@ -51,7 +51,7 @@ class Grid(NamedTuple):
     1: warp to i + 1, bit 2: weft to j + 1); and a bit per sense of march in which the node's cell was attempted.
     ``sides_u`` (nu - 1,) and ``sides_v`` (nv - 1,) are the lengths of the cell sides, mm. ``bucket`` and
     ``following`` are the spatial hash in which the net looks for itself (links are (i << 32 | j) + 1); ``box``
-    holds the least and greatest i, then j, of the nodes. Few arrays, because each costs time at every call of a kernel.
+    holds the least and greatest i, then j, of the nodes. Few arrays: each costs time at every call of a kernel.
     """
 
     face: np.ndarray

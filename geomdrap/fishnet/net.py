@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,7 +26,9 @@ class Net:
     NaN where there is no node; ``face`` (nu, nv) the face of ``surface`` it lies on, -1 where none; ``status``
     (nu, nv) of ``Status``: why a node is absent; ``status_around`` (nu + 2, nv + 2) the same with a frame of
     one node more. ``cell_valid`` (nu - 1, nv - 1): the four sides of the cell exist. ``lattice`` and
-    ``lattice_valid`` are ``points`` and ``cell_valid`` with the nodes over holes as well. ``origin`` (3,) mm,
+    ``lattice_valid`` are ``points`` and ``cell_valid`` with the nodes over holes as well. ``yarns``
+    (2, nu, nv, 3) are the unit directions of warp and weft at them. ``cell_shear`` (nu - 1, nv - 1) and ``shear``
+    (nu, nv) are signed, in degrees, NaN where there is no cell or no node (see ``shears``). ``origin`` (3,) mm,
     ``warp0``, ``weft0``, ``normal0`` (3,) unit vectors there; ``angle`` degrees; ``pitch`` mm; ``reach`` half
     lengths of the blank, mm. ``notes`` say what was chosen, ``warnings`` what the user should look at.
     """
@@ -50,6 +51,9 @@ class Net:
     cell_valid: np.ndarray
     lattice: np.ndarray
     lattice_valid: np.ndarray
+    yarns: np.ndarray
+    cell_shear: np.ndarray
+    shear: np.ndarray
     notes: tuple[str, ...] = field(default=())
     warnings: tuple[str, ...] = field(default=())
 
@@ -57,24 +61,6 @@ class Net:
     def status(self) -> np.ndarray:
         """Why each node is present or absent (nu, nv), values of ``Status``."""
         return self.status_around[1:-1, 1:-1]
-
-    @cached_property
-    def cell_shear(self) -> np.ndarray:
-        """Signed shear of the cells (nu - 1, nv - 1), degrees, NaN where a cell is not valid.
-
-        From the diagonals: in a parallelogram d1² - d2² = 4 a b sin γ and d1² + d2² = 2 (a² + b²). The quotient
-        of the two cancels the leading error of chords on a curved surface.
-        """
-        from geomdrap.fishnet.shear import shear_of_cells
-
-        return shear_of_cells(self.points, self.u, self.v, self.cell_valid)
-
-    @cached_property
-    def shear(self) -> np.ndarray:
-        """Signed shear at the nodes (nu, nv), degrees: mean of the corners of the cells around a node."""
-        from geomdrap.fishnet.shear import shear_at_nodes
-
-        return shear_at_nodes(self.points, self.cell_valid)
 
     def interpolate(self, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Points (n, 3) mm on the surface and shear (n,) degrees at fabric coordinates u, v (n,) mm.
