@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from geomdrap.fields.result import Checks
 from geomdrap.fishnet.drape import SPREAD
+from geomdrap.geodesic.compiled import kernel
 from geomdrap.geodesic.mesh import BEND, mesh_of
 
 if TYPE_CHECKING:
@@ -83,30 +85,45 @@ def _deficit_per_cell(net: Net, trimmed: Trimmed) -> np.ndarray:
     corners = trimmed.mesh.triangles
     own = (corners < len(at)) & (trimmed.kind > 0)[:, None]
     at[corners[own]] = (trimmed.at[own] - [net.u[0], net.v[0]]) / net.pitch
-    row = mesh_of(part.lidded, SPREAD * net.pitch).row[:, BEND:].reshape(-1, 3, 2)
-    triangles = part.lidded.triangles
-    share_a, share_b = row[..., 0], row[..., 1] - row[..., 0]
-    first, second = triangles, np.roll(triangles, -1, axis=1)
-    # an edge has its share in both of its facets, so each counts half
-    spread = 0.5 * np.bincount(
-        np.concatenate([first.ravel(), second.ravel()]),
-        np.concatenate([share_a.ravel(), share_b.ravel()]),
-        len(at),
-    )
-    places, masses = [at], [part.lidded.deficits - spread]
-    for n in range(PER_EDGE):
-        t = (n + 0.5) / PER_EDGE
-        places.append(((1.0 - t) * at[first] + t * at[second]).reshape(-1, 2))
-        masses.append(0.5 * row[..., 1].ravel() / PER_EDGE)
-    place, mass = np.concatenate(places), np.concatenate(masses)
-    there = np.isfinite(place[:, 0]) & (mass != 0.0)
+    whole = part.lidded
+    bend = mesh_of(whole, SPREAD * net.pitch).row[:, BEND:].reshape(-1, 3, 2)
     cells = np.zeros(net.lattice_valid.shape)
-    for dp in (-ON_LINE, ON_LINE):
-        for dq in (-ON_LINE, ON_LINE):
-            cell = np.floor(place[there] + [dp, dq]).astype(int)
-            inside = ((cell >= 0) & (cell < cells.shape)).all(axis=1)
-            np.add.at(cells, tuple(cell[inside].T), 0.25 * mass[there][inside])
+    deposit(cells, at, whole.triangles, bend, whole.deficits.copy())
     return cells
+
+
+@kernel
+def deposit(cells: np.ndarray, at: np.ndarray, triangles: np.ndarray, bend: np.ndarray, deficit: np.ndarray) -> None:
+    """Add deficits to the cells that hold them: what ``bend`` spreads along edges there, the rest at the vertices.
+
+    ``at`` (n, 2) are the vertices' coordinates in cells, NaN where unknown. An edge stands in two facets, half each.
+    """
+    for f in range(len(triangles)):
+        for k in range(3):
+            both = bend[f, k, 1]
+            if both == 0.0 and bend[f, k, 0] == 0.0:
+                continue
+            a, b = triangles[f, k], triangles[f, (k + 1) % 3]
+            deficit[a] -= 0.5 * bend[f, k, 0]
+            deficit[b] -= 0.5 * (both - bend[f, k, 0])
+            for n in range(PER_EDGE):
+                t = (n + 0.5) / PER_EDGE
+                p, q = (1.0 - t) * at[a, 0] + t * at[b, 0], (1.0 - t) * at[a, 1] + t * at[b, 1]
+                add_around(cells, p, q, 0.5 * both / PER_EDGE)
+    for v in range(len(at)):
+        add_around(cells, at[v, 0], at[v, 1], deficit[v])
+
+
+@kernel
+def add_around(cells: np.ndarray, p: float, q: float, mass: float) -> None:
+    """Add a mass to the cell of (p, q), shared with the next one where it lies on the yarn between them."""
+    if math.isnan(p) or math.isnan(q):
+        return
+    for a in (-ON_LINE, ON_LINE):
+        for b in (-ON_LINE, ON_LINE):
+            i, j = int(math.floor(p + a)), int(math.floor(q + b))
+            if 0 <= i < cells.shape[0] and 0 <= j < cells.shape[1]:
+                cells[i, j] += 0.25 * mass
 
 
 def _from_seed(cells: np.ndarray, i0: int, j0: int) -> np.ndarray:

@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from geomdrap.fields.locate import locate
-from geomdrap.geodesic.compiled import kernel
+from geomdrap.geodesic.compiled import inlined, kernel
 
 BARE, BY_NET, BEYOND = 0, 1, 2
 JUMP = 0.4  # cells: neighbouring values that differ by this much more than they can belong to two sheets
@@ -93,16 +93,18 @@ def by_net(
     return at
 
 
-@kernel
-def turn_into_plane(v: np.ndarray, normal: np.ndarray, other: np.ndarray, out: np.ndarray) -> None:
-    """Turn a vector of the plane across ``normal`` into that across ``other`` the shortest way, adding to ``out``."""
-    axis = np.cross(normal, other)
-    cosine = (normal * other).sum()
-    if cosine < -0.99:  # back to back: there is no shortest way, and no net lies so
-        out += math.nan
-        return
-    # Rodrigues' rotation, with (1 - cos) / sin² = 1 / (1 + cos)
-    out += cosine * v + np.cross(axis, v) + axis * ((axis * v).sum() / (1.0 + cosine))
+@inlined
+def add_turned(
+    weight: float, v: np.ndarray, ox: float, oy: float, oz: float, normal: np.ndarray, out: np.ndarray
+) -> None:
+    """Turn a vector of the plane across o into that across ``normal`` the shortest way and add it to ``out``."""
+    ax, ay, az = oy * normal[2] - oz * normal[1], oz * normal[0] - ox * normal[2], ox * normal[1] - oy * normal[0]
+    cosine = ox * normal[0] + oy * normal[1] + oz * normal[2]
+    # Rodrigues' rotation, with (1 - cos) / sin² = 1 / (1 + cos); back to back there is no shortest way
+    along = (ax * v[0] + ay * v[1] + az * v[2]) / (1.0 + cosine) if cosine > -0.99 else math.nan
+    out[0] += weight * (cosine * v[0] + ay * v[2] - az * v[1] + ax * along)
+    out[1] += weight * (cosine * v[1] + az * v[0] - ax * v[2] + ay * along)
+    out[2] += weight * (cosine * v[2] + ax * v[1] - ay * v[0] + az * along)
 
 
 @kernel
@@ -117,21 +119,21 @@ def tangents_at(p: float, q: float, yarns: np.ndarray, normal: np.ndarray, side:
     j = min(max(int(math.floor(q)), 0), nv - 2)
     s, t = min(max(p - i, 0.0), 1.0), min(max(q - j, 0.0), 1.0)
     out[:] = 0.0
-    turned = np.empty(3)
-    for di in range(2):
-        for dj in range(2):
-            warp, weft = yarns[0, i + di, j + dj].astype(np.float64), yarns[1, i + di, j + dj].astype(np.float64)
+    for k in range(i, i + 2):
+        for m in range(j, j + 2):
+            warp, weft = yarns[0, k, m], yarns[1, k, m]
             if math.isnan(warp[0]) or math.isnan(weft[0]):
                 continue
-            own = unit(np.cross(warp, weft))
-            weight = (s if di else 1 - s) * (t if dj else 1 - t)
-            for n in range(2):
-                turned[:] = 0.0
-                turn_into_plane(warp if n == 0 else weft, own, normal, turned)
-                out[n] += weight * turned
+            ox, oy = warp[1] * weft[2] - warp[2] * weft[1], warp[2] * weft[0] - warp[0] * weft[2]
+            oz = warp[0] * weft[1] - warp[1] * weft[0]
+            size = math.sqrt(ox * ox + oy * oy + oz * oz)
+            weight = (s if k > i else 1 - s) * (t if m > j else 1 - t)
+            add_turned(weight, warp, ox / size, oy / size, oz / size, normal, out[0])
+            add_turned(weight, weft, ox / size, oy / size, oz / size, normal, out[1])
     for n in range(2):
-        length = math.sqrt((out[n] * out[n]).sum())
-        out[n] *= side / length if length > 0.0 else math.nan
+        length = math.sqrt(out[n, 0] ** 2 + out[n, 1] ** 2 + out[n, 2] ** 2)
+        for c in range(3):
+            out[n, c] = out[n, c] * side / length if length > 0.0 else math.nan
 
 
 @kernel
@@ -210,11 +212,12 @@ def continue_beyond(
     for f in range(m):
         for k in range(3):
             at[f, k] = vertex_at[triangles[f, k]]
-        if np.isnan(at[f]).any() or not fits(points, triangles[f], at[f], side):
+        p, q = (at[f, 0, 0] + at[f, 1, 0] + at[f, 2, 0]) / 3.0, (at[f, 0, 1] + at[f, 1, 1] + at[f, 2, 1]) / 3.0
+        if math.isnan(p) or not fits(points, triangles[f], at[f], side):
             at[f] = np.nan
             continue
-        tangents_at(at[f, :, 0].mean(), at[f, :, 1].mean(), yarns, normals[f], side, tangent[f])
-        if np.isnan(tangent[f]).any():
+        tangents_at(p, q, yarns, normals[f], side, tangent[f])
+        if math.isnan(tangent[f, 0, 0] + tangent[f, 1, 0]):
             at[f] = np.nan
             continue
         kind[f] = BY_NET

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from geomdrap.geodesic.compiled import inlined, kernel
+from geomdrap.geodesic.mesh import in_frame, in_space
 from geomdrap.geodesic.unfold import ENDED, LEFT_THE_PART, shoot, step_over
 
 CLOSED = 0
@@ -24,8 +25,9 @@ FOLDED = 2
 NOT_CLOSED = 3
 
 # Of the side: distance between the ends of the two lines before the last correction. The correction leaves its
-# square, and its product with the bends on the way, which are below 1e-3: some 1e-8 of the side in all.
+# square, and its product with the bends on the way: 1e-8 of the side on a fine mesh, 1e-6 on a very coarse one.
 TOLERANCE = 1e-5
+MEET = 1e-7  # of the side: ends this close that lie in faces which do not touch are one
 ROUNDS = 24
 TOGETHER = 6  # rounds in which both lines are turned at once
 
@@ -45,6 +47,14 @@ def crossing(
         return False, 0.0, 0.0
     height = sense * math.sqrt(height2)
     return True, bx + along * ex + height * ey, by + along * ey - height * ex
+
+
+@inlined
+def apart(frames: np.ndarray, f: int, x: float, y: float, g: int, p: float, q: float) -> float:
+    """Distance in space of two points in the frames of two faces, mm."""
+    ax, ay, az = in_space(frames, f, x, y)
+    bx, by, bz = in_space(frames, g, p, q)
+    return math.sqrt((ax - bx) ** 2 + (ay - by) ** 2 + (az - bz) ** 2)
 
 
 @kernel
@@ -149,21 +159,11 @@ def close_cell(
         else:
             if sb == LEFT_THE_PART and sd == LEFT_THE_PART:
                 return OFF_PART, -1, 0.0, 0.0, bx, by, ux, uy, dx, dy, wx, wy
-            turn_b, turn_d = meeting_rotation(
-                frames,
-                f,
-                px + lb * ux,
-                py + lb * uy,
-                ux,
-                uy,
-                lb,
-                g,
-                qx + ld * wx,
-                qy + ld * wy,
-                wx,
-                wy,
-                ld,
-            )
+            ex, ey, kx, ky = px + lb * ux, py + lb * uy, qx + ld * wx, qy + ld * wy
+            if sb == ENDED and sd == ENDED and apart(frames, f, ex, ey, g, kx, ky) <= MEET * max(lb, ld):
+                wx, wy = in_frame(frames, g, f, wx, wy)  # both end at a vertex, in faces across it
+                return CLOSED, f, ex, ey, bx, by, ux, uy, dx, dy, wx, wy
+            turn_b, turn_d = meeting_rotation(frames, f, ex, ey, ux, uy, lb, g, kx, ky, wx, wy, ld)
             c, s = math.cos(turn_b), math.sin(turn_b)
             bx, by = c * bx - s * by, s * bx + c * by
             c, s = math.cos(turn_d), math.sin(turn_d)

@@ -15,7 +15,7 @@ from geomdrap.fishnet.place import (
     side_between,
 )
 from geomdrap.geodesic.compiled import inlined, kernel
-from geomdrap.geodesic.mesh import Mesh, in_space
+from geomdrap.geodesic.mesh import Mesh, in_frame, in_space
 from geomdrap.geodesic.trace import follow
 from geomdrap.geodesic.unfold import ENDED
 
@@ -102,20 +102,6 @@ def same_place(mesh: Mesh, grid: Grid, i: int, j: int, face: int, x: float, y: f
     return (px - qx) ** 2 + (py - qy) ** 2 + (pz - qz) ** 2 <= (SAME_PLACE * side) ** 2
 
 
-@kernel
-def in_frame(mesh: Mesh, face: int, other: int, dx: float, dy: float) -> tuple[float, float]:
-    """Direction of one face, turned into the plane of another that is near it."""
-    if face == other:
-        return dx, dy
-    ex = ey = 0.0
-    for k in range(3):
-        along = dx * mesh.frames[face, 3 + k] + dy * mesh.frames[face, 6 + k]
-        ex += along * mesh.frames[other, 3 + k]
-        ey += along * mesh.frames[other, 6 + k]
-    norm = np.hypot(ex, ey)
-    return ex / norm, ey / norm
-
-
 @inlined
 def is_open(grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
     """Whether the cell from A = (i, j) to C = (i + su, j + sv) can be tried: A, B, D are joined, C is not to both."""
@@ -179,8 +165,8 @@ def try_cell(mesh: Mesh, grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
     if known:  # two fronts meet
         if state != CLOSED or not same_place(mesh, grid, k, m, face, x, y, lb):
             return False
-        abx, aby = in_frame(mesh, face, grid.face[k, m] - 1, abx, aby)
-        adx, ady = in_frame(mesh, face, grid.face[k, m] - 1, adx, ady)
+        abx, aby = in_frame(mesh.frames, face, grid.face[k, m] - 1, abx, aby)
+        adx, ady = in_frame(mesh.frames, face, grid.face[k, m] - 1, adx, ady)
     # at B and D, too, the corner of the cell must open to its own side
     if state == CLOSED and ((oby * px - obx * py) * sense >= 0.0 or (ody * qx - odx * qy) * sense <= 0.0):
         state = FOLDED
@@ -204,29 +190,39 @@ def shadowed(grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
 
 
 @kernel
-def sweep(mesh: Mesh, grid: Grid, i0: int, j0: int, i1: int, j1: int, su: int, sv: int, outward: bool) -> int:
-    """Try every cell from node (i0, j0) to (i1, j1) in one sense of march; the number that gave something.
+def fill_quadrant(mesh: Mesh, grid: Grid, i0: int, j0: int, columns: int, rows: int, su: int, sv: int) -> None:
+    """Close the cells of one quadrant outward from the seed, diagonal by diagonal.
 
-    ``outward``: the march leads away from the seed. There a fold throws a shadow: what lies behind it would have
-    to be cut and stitched, so it is left bare and marked.
+    In that order a cell is tried before anything that lies behind it. A fold throws a shadow: what is behind it would
+    have to be cut and stitched, so it is left bare and marked.
     """
-    gained = 0
-    for j in range(j0, j1, sv):
-        for i in range(i0, i1, su):
-            state = grid.marks[i + su, j + sv, STATUS]
+    for diagonal in range(columns + rows - 1):
+        for a in range(max(0, diagonal - rows + 1), min(diagonal + 1, columns)):
+            i, j = i0 + a * su, j0 + (diagonal - a) * sv
             if is_open(grid, i, j, su, sv):
-                gained += try_cell(mesh, grid, i, j, su, sv)
-            elif outward and state == UNREACHED and shadowed(grid, i, j, su, sv):
+                try_cell(mesh, grid, i, j, su, sv)
+            elif grid.marks[i + su, j + sv, STATUS] == UNREACHED and shadowed(grid, i, j, su, sv):
                 grid.marks[i + su, j + sv, STATUS] = IS_BEHIND_FOLD
-    return gained
 
 
 @kernel
 def fill_quadrants(mesh: Mesh, grid: Grid, i0: int, j0: int) -> None:
-    """Close the cells between the half-axes, outward from the seed."""
+    """Close the cells between the half-axes."""
     box = grid.box.copy()
     for su, sv in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
-        sweep(mesh, grid, i0, j0, box[1] if su > 0 else box[0], box[3] if sv > 0 else box[2], su, sv, True)
+        columns, rows = abs(box[1 if su > 0 else 0] - i0), abs(box[3 if sv > 0 else 2] - j0)
+        fill_quadrant(mesh, grid, i0, j0, columns, rows, su, sv)
+
+
+@kernel
+def sweep(mesh: Mesh, grid: Grid, i0: int, j0: int, i1: int, j1: int, su: int, sv: int) -> int:
+    """Try every open cell from node (i0, j0) to (i1, j1) in one sense of march; the number that gave something."""
+    gained = 0
+    for j in range(j0, j1, sv):
+        for i in range(i0, i1, su):
+            if is_open(grid, i, j, su, sv):
+                gained += try_cell(mesh, grid, i, j, su, sv)
+    return gained
 
 
 @kernel
@@ -241,4 +237,4 @@ def close_everywhere(mesh: Mesh, grid: Grid) -> None:
                 i0, i1 = i1, i0
             if sv < 0:
                 j0, j1 = j1, j0
-            gained += sweep(mesh, grid, i0, j0, i1, j1, su, sv, False)
+            gained += sweep(mesh, grid, i0, j0, i1, j1, su, sv)

@@ -29,7 +29,7 @@ def shears(grid: Grid, i0: int, j0: int, valid: np.ndarray) -> tuple[np.ndarray,
     """Signed shear of the cells (nu - 1, nv - 1) and at the nodes (nu, nv), degrees, NaN where there is none.
 
     ``valid`` (nu - 1, nv - 1); the first cell is that of grid node (i0, j0). A cell's comes from its diagonals, each
-    taken across the two unfolded triangles that it splits the cell into: with sides a, b and corner angles A, B, C, D,
+    taken across the two unfolded triangles that it cuts the cell into: with sides a, b and corner angles A, B, C, D,
     BD² is the mean of a² + b² - 2ab cos A and the same with C, AC² that of B and D; sin γ = (AC² - BD²) / 4ab.
     A node's is the mean of its corners, each with the sign of its quadrant.
     """

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from geomdrap.geodesic.bend import bends
-from geomdrap.geodesic.compiled import inlined
+from geomdrap.geodesic.compiled import inlined, kernel
 
 if TYPE_CHECKING:
     from geomdrap.surface import Surface
@@ -61,6 +62,20 @@ def normal_of(frames: np.ndarray, f: int) -> tuple[float, float, float]:
         frames[f, 5] * frames[f, 6] - frames[f, 3] * frames[f, 8],
         frames[f, 3] * frames[f, 7] - frames[f, 4] * frames[f, 6],
     )
+
+
+@kernel
+def in_frame(frames: np.ndarray, face: int, other: int, dx: float, dy: float) -> tuple[float, float]:
+    """Direction of one face, turned into the plane of another that is near it."""
+    if face == other:
+        return dx, dy
+    ex = ey = 0.0
+    for k in range(3):
+        along = dx * frames[face, 3 + k] + dy * frames[face, 6 + k]
+        ex += along * frames[other, 3 + k]
+        ey += along * frames[other, 6 + k]
+    norm = math.hypot(ex, ey)
+    return ex / norm, ey / norm
 
 
 _MADE: WeakKeyDictionary[Surface, dict[float, Mesh]] = WeakKeyDictionary()

@@ -8,6 +8,7 @@ nothing is accumulated on the way.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,8 @@ TOO_MANY_FACES = 2
 # index counts from the end of an array; that check would cost a third of the walk.
 NO_SIGN = 0x3FFFFFFF
 
-OUTSIDE = 1e-12  # of the face's size squared: twice the area by which a point must be beyond an edge to count
+OUTSIDE = 1e-12  # of the face's size: distance beyond an inner edge below which a point may count as on it
+ON_RIM = 1e-9  # of the length: an end no further than this beyond the rim is on it, on every machine
 
 # For each of the eight ways in which the corners of a face lie left or right of a line, two bits: the edge that
 # begins right of it and ends left, 3 where there is none. A table, because the branches could not be predicted.
@@ -95,17 +97,26 @@ def is_beyond(row: np.ndarray, f: int, k: int, x: float, y: float) -> bool:
     return (row[f, 2 * after(k)] - ax) * (y - ay) - (row[f, 2 * after(k) + 1] - ay) * (x - ax) < 0.0
 
 
+@inlined
+def hardly_beyond(row: np.ndarray, f: int, k: int, x: float, y: float, least: float) -> bool:
+    """Whether a point lies beyond edge k by less than ``least`` mm."""
+    ax, ay = row[f, 2 * k], row[f, 2 * k + 1]
+    ex, ey = row[f, 2 * after(k)] - ax, row[f, 2 * after(k) + 1] - ay
+    return ex * (y - ay) - ey * (x - ax) >= -least * math.sqrt(ex * ex + ey * ey)
+
+
 @kernel
-def other_exit(row: np.ndarray, f: int, k: int, entered: int, x: float, y: float) -> int:
+def other_exit(
+    row: np.ndarray, link: np.ndarray, f: int, k: int, entered: int, x: float, y: float, least: float
+) -> int:
     """The edge that a point on this side of edge k lies beyond all the same, or -1.
 
-    That happens where a line runs along edge k and out over its corner, so that it never crosses that edge.
+    That happens where a line runs along edge k and out over its corner, so that it never crosses that edge. Beyond
+    the rim of the part counts only what is more than ``least`` mm.
     """
-    least = OUTSIDE * (row[f, 2] * row[f, 2] + row[f, 4] * row[f, 4] + row[f, 5] * row[f, 5])
+    size = math.sqrt(row[f, 2] * row[f, 2] + row[f, 4] * row[f, 4] + row[f, 5] * row[f, 5])
     for j in (after(k), before(k)):
-        ax, ay = row[f, 2 * j], row[f, 2 * j + 1]
-        ex, ey = row[f, 2 * after(j)] - ax, row[f, 2 * after(j) + 1] - ay
-        if j != entered and ex * (y - ay) - ey * (x - ax) < -least:
+        if j != entered and not hardly_beyond(row, f, j, x, y, OUTSIDE * size if link[f, j] >= 0 else least):
             return j
     return -1
 
@@ -148,8 +159,10 @@ def shoot(
     k = first_exit(row, face, x, y, dx, dy)
     entered = -1
     for _ in range(FACE_LIMIT):
-        if not is_beyond(row, face, k, x + length * dx, y + length * dy):
-            other = other_exit(row, face, k, entered, x + length * dx, y + length * dy)
+        ex, ey = x + length * dx, y + length * dy
+        beyond = is_beyond(row, face, k, ex, ey)
+        if not beyond or (link[face, k] < 0 and hardly_beyond(row, face, k, ex, ey, ON_RIM * length)):
+            other = other_exit(row, link, face, k, entered, ex, ey, ON_RIM * length)
             if other < 0:
                 return ENDED, face, x, y, dx, dy
             k = other

@@ -11,6 +11,7 @@ from geomdrap.geodesic.compiled import kernel
 from geomdrap.geodesic.mesh import after, before
 
 FAN_LIMIT = 100_000
+ALONG_RIM = 1e-7  # radians by which a line along the rim may point out of the part
 
 
 @kernel
@@ -49,26 +50,47 @@ def turn_left(row: np.ndarray, link: np.ndarray, face: int, at: int, angle_rad: 
     left = angle_rad
     for _ in range(FAN_LIMIT):
         dx, dy, opening = wedge(row, here, k)
-        if left <= opening:
+        onward = link[here, before(k)]
+        if left <= opening or (onward < 0 and left <= opening + ALONG_RIM):
             c, s = math.cos(left), math.sin(left)
             return here, k, c * dx - s * dy, s * dx + c * dy
-        left -= opening
-        onward = link[here, before(k)]
         if onward < 0:
             return -1, k, dx, dy
+        left -= opening
         here, k = onward >> 2, onward & 3
     return -1, k, dx, dy
+
+
+@kernel
+def fan_start(row: np.ndarray, link: np.ndarray, face: int, at: int) -> tuple[int, int, float]:
+    """First face and corner of the fan around a vertex of the rim, and the angle (radians) from there to ``face``."""
+    here, k, angle = face, at, 0.0
+    for _ in range(FAN_LIMIT):
+        onward = link[here, k]
+        if onward < 0:
+            break
+        here, k = onward >> 2, after(onward & 3)
+        angle += wedge(row, here, k)[2]
+    return here, k, angle
 
 
 @kernel
 def go_straight_through(row: np.ndarray, link: np.ndarray, face: int, at: int, dx: float, dy: float) -> Any:
     """Continue a line that runs into corner ``at`` so that the angles on its two sides are equal.
 
-    This is the straightest geodesic of Polthier and Schmies (1998). Returns as ``turn_left``.
+    This is the straightest geodesic of Polthier and Schmies (1998). At a vertex of the rim the side that has a half
+    turn of faces decides, the left one first; where neither has, the line ends. Returns as ``turn_left``.
     """
     total = total_angle(row, link, face, at)
-    if total < 0.0:
-        return -1, at, dx, dy
     ex, ey, _ = wedge(row, face, at)
     back = math.atan2(ex * -dy - ey * -dx, ex * -dx + ey * -dy)
-    return turn_left(row, link, face, at, (back + 0.5 * total) % total)
+    if total >= 0.0:
+        return turn_left(row, link, face, at, (back + 0.5 * total) % total)
+    onward, k, ox, oy = turn_left(row, link, face, at, back + math.pi)
+    if onward >= 0:
+        return onward, k, ox, oy
+    first, k, angle = fan_start(row, link, face, at)
+    behind = angle + back - math.pi
+    if behind < -ALONG_RIM:
+        return -1, at, dx, dy
+    return turn_left(row, link, first, k, max(behind, 0.0))
