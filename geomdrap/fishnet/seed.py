@@ -103,14 +103,14 @@ def plant(
     around = total_angle(*fan) if vertex >= 0 else -1.0
     normal = surface.normals[face]
     if around > 0.0:
-        normal = surface.vertex_normals[surface.triangles[face, vertex]]
+        normal = surface.lidded.vertex_normals[surface.triangles[face, vertex]]
     across = heading_frame(normal, reference)
     beside = np.cross(normal, across)
     headings_rad = np.radians(angle + np.array([0.0, weft_angle, 180.0, 180.0 + weft_angle]))
     directions = np.cos(headings_rad)[:, None] * across + np.sin(headings_rad)[:, None] * beside
     starts, places = np.full(4, face), np.empty((4, 4))
     if around > 0.0:
-        base_rad = _angle_in_fan(surface, face, vertex, normal, directions[0], around)
+        base_rad = _angle_in_fan(surface.lidded, face, vertex, normal, directions[0], around)
         for a in range(4):
             turn = base_rad + (headings_rad[a] - headings_rad[0]) * around / (2.0 * math.pi)
             start, at, dx, dy = turn_left(*fan, turn % around)

@@ -134,7 +134,7 @@ def test_the_summary_names_what_matters(run: Run, asked: dict[str, Any]) -> None
         "coverage   96.88 %",
         "50.0 mm² at (18.00, 18.00, 0.00): off the part",
         "drape.json",
-        "edges off by 2e-13 mm",
+        "sides too long by 2e-13 of the pitch",
     ):
         assert fact in summary, summary
     assert "nan" not in summary
