@@ -12,7 +12,7 @@ from geomdrap.fishnet import seed as seeds
 from geomdrap.fishnet.effect import Effect, after, before
 from geomdrap.fishnet.extent import Extent, first_extent, grow, sides
 from geomdrap.fishnet.fabric import Fabric
-from geomdrap.fishnet.front import carry_front_on
+from geomdrap.fishnet.front import branch_off, carry_front_on
 from geomdrap.fishnet.grid import PIECES, Grid, Status, empty_grid
 from geomdrap.fishnet.march import fill_quadrants, lay_generators
 from geomdrap.fishnet.net import Net, cells_of
@@ -79,17 +79,21 @@ def _march(mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: 
     """Seed, generators (α-nodes), cells (β-nodes), and the front carried on."""
     grid = empty_grid(*sides(extent, pitch))
     i0, j0 = extent.west, extent.south
-    x, y = _seed_in_frame(mesh, start)
-    place_seed(mesh, grid, i0, j0, start.face, x, y, math.radians(fabric.weft_angle))
+    weft_rad = math.radians(fabric.weft_angle)
+    place_seed(mesh, grid, i0, j0, start.face, *_seed_in_frame(mesh, start), weft_rad)
     lay_generators(mesh, grid, i0, j0, start.starts, start.places)
+    branch_off(mesh, grid, i0, j0, weft_rad)
     fill_quadrants(mesh, grid, i0, j0)
     carry_front_on(mesh, grid, i0, j0)
     return grid
 
 
-def _seed_in_frame(mesh: Mesh, start: seeds.Seed) -> tuple[float, float]:
+def _seed_in_frame(mesh: Mesh, start: seeds.Seed) -> tuple[float, float, float, float]:
+    """Point and unit warp direction of the seed in the frame of its face."""
     origin, e1, e2 = mesh.frames[start.face].reshape(3, 3)
-    return float((start.point - origin) @ e1), float((start.point - origin) @ e2)
+    away = start.point - origin
+    heading_rad = math.atan2(float(start.warp @ e2), float(start.warp @ e1))
+    return float(away @ e1), float(away @ e2), math.cos(heading_rad), math.sin(heading_rad)
 
 
 def _check_distance(surface: Surface, origin: seeds.Origin, distance: float, pitch: float, project: bool) -> None:

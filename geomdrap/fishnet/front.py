@@ -7,6 +7,8 @@ its sides are then closed from it, and so on until no yarn leads anywhere new.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from geomdrap.fishnet.grid import STATUS, Grid
@@ -18,6 +20,7 @@ from geomdrap.fishnet.march import (
     carry_on,
     close_everywhere,
     inside,
+    lay_yarn,
 )
 from geomdrap.fishnet.place import (
     MEETS_ITSELF,
@@ -32,6 +35,43 @@ from geomdrap.geodesic.unfold import ENDED, shoot
 
 STEP_I = (1, 0, -1, 0)
 STEP_J = (0, 1, 0, -1)
+
+
+@kernel
+def branch_off(mesh: Mesh, grid: Grid, i0: int, j0: int, weft_rad: float) -> None:
+    """Let the missing generator leave from another node where the seed has none of its family: on rims and corners.
+
+    It leaves from the node nearest to the seed from which it can, at the angle that warp and weft have at the seed.
+    """
+    alone = grid.box[0] == grid.box[1], grid.box[2] == grid.box[3]
+    if alone[0] == alone[1]:
+        return
+    di, dj = (0, 1) if alone[0] else (1, 0)  # the family that is there
+    turn_rad = -weft_rad if alone[0] else weft_rad
+    for away in range(1, max(grid.face.shape)):
+        for sense in (1, -1):
+            i, j = i0 + sense * away * di, j0 + sense * away * dj
+            if not inside(grid, i, j) or grid.face[i, j] == 0:
+                continue
+            bx, by = departure(grid, i, j, -sense * di, -sense * dj)
+            c, s = -sense * math.cos(turn_rad), -sense * math.sin(turn_rad)
+            dx, dy = c * bx - s * by, s * bx + c * by
+            if branch(mesh, grid, i, j, dj, di, dx, dy) + branch(mesh, grid, i, j, -dj, -di, -dx, -dy) > 0:
+                return
+
+
+@kernel
+def branch(mesh: Mesh, grid: Grid, i: int, j: int, di: int, dj: int, dx: float, dy: float) -> int:
+    """Lay a generator from node (i, j) in a direction of its face's frame until it ends; the nodes laid."""
+    laid = 0
+    x, y = grid.node[i, j, 0], grid.node[i, j, 1]
+    if inside(grid, i + di, j + dj) and lay_yarn(mesh, grid, i, j, di, dj, grid.face[i, j] - 1, x, y, dx, dy):
+        laid = 1
+        while inside(grid, i + (laid + 1) * di, j + (laid + 1) * dj):
+            if not carry_on(mesh, grid, i + laid * di, j + laid * dj, di, dj):
+                break
+            laid += 1
+    return laid
 
 
 @kernel

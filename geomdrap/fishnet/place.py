@@ -167,14 +167,17 @@ def side_between(grid: Grid, i: int, j: int, di: int, dj: int) -> float:
 
 
 @kernel
-def place_seed(mesh: Mesh, grid: Grid, i: int, j: int, face: int, x: float, y: float, weft_rad: float) -> None:
-    """Put the seed; of its yarn directions only the angle between warp and weft is used."""
+def place_seed(
+    mesh: Mesh, grid: Grid, i: int, j: int, face: int, x: float, y: float, dx: float, dy: float, weft_rad: float
+) -> None:
+    """Put the seed, with the warp in direction (dx, dy) of its face's frame and the weft turned from it."""
     place(mesh, grid, i, j, face, x, y, grid.sides_u[0])
     c, s = math.cos(weft_rad), math.sin(weft_rad)
-    depart_as(grid, i, j, 1, 0, 1.0, 0.0)
-    depart_as(grid, i, j, -1, 0, -1.0, 0.0)
-    depart_as(grid, i, j, 0, 1, c, s)
-    depart_as(grid, i, j, 0, -1, -c, -s)
+    ex, ey = c * dx - s * dy, s * dx + c * dy
+    depart_as(grid, i, j, 1, 0, dx, dy)
+    depart_as(grid, i, j, -1, 0, -dx, -dy)
+    depart_as(grid, i, j, 0, 1, ex, ey)
+    depart_as(grid, i, j, 0, -1, -ex, -ey)
 
 
 @kernel

@@ -53,11 +53,19 @@ def locate(surface: Surface, origin: Origin) -> tuple[int, np.ndarray, float]:
         origin = int(match[1])
     if isinstance(origin, (int, np.integer)):
         return _vertex(surface, int(origin))
-    target = surface.centroid if isinstance(origin, str) else np.asarray(origin, dtype=float)
+    target = surface.centroid if isinstance(origin, str) else _vector(origin)
     if target.shape != (3,) or not np.isfinite(target).all():
         raise DrapeError(f"origin {origin} is not three finite numbers x, y, z in mm")
     near = surface.nearest(target[None])
     return int(near.face[0]), near.point[0], float(near.distance[0])
+
+
+def _vector(numbers: object) -> np.ndarray:
+    """An array of floats; empty where these are no numbers, which no later check accepts."""
+    try:
+        return np.asarray(numbers, dtype=float)
+    except (TypeError, ValueError):
+        return np.empty(0)
 
 
 def _vertex(surface: Surface, number: int) -> tuple[int, np.ndarray, float]:
@@ -74,9 +82,9 @@ def heading_frame(normal: np.ndarray, reference: Sequence[float] | None) -> np.n
 
     Raises DrapeError for a reference direction of the user's that is zero or within 5° of the normal.
     """
-    for direction in [np.eye(3)[0], np.eye(3)[1]] if reference is None else [np.asarray(reference, dtype=float)]:
+    for direction in [np.eye(3)[0], np.eye(3)[1]] if reference is None else [_vector(reference)]:
         norm = np.linalg.norm(direction)
-        if not (np.isfinite(norm) and norm > 0.0) or direction.shape != (3,):
+        if direction.shape != (3,) or not (np.isfinite(norm) and norm > 0.0):
             raise DrapeError(f"reference direction {reference} is not three numbers that point somewhere")
         if abs(direction @ normal) < ALONG_NORMAL * norm:
             flat = direction - (direction @ normal) * normal

@@ -15,6 +15,7 @@ from geomdrap.geodesic.unfold import (
     ENDED,
     FACE_LIMIT,
     LEFT_THE_PART,
+    TIE,
     TOO_MANY_FACES,
     first_exit,
     is_beyond,
@@ -81,14 +82,18 @@ def follow(
     points = np.empty((64, 2))
     count = 0
     left = length
+    tie = TIE * length
     entered = -1
     for _ in range(FACE_LIMIT):
         if count == len(faces):
             faces = np.concatenate((faces, np.empty_like(faces)))
             points = np.concatenate((points, np.empty_like(points)))
         hit = vertex_ahead(row, face, x, y, dx, dy, left)
-        k = first_exit(row, face, x, y, dx, dy) if entered < 0 else next_exit(row, face, entered, x, y, dx, dy)
-        if hit < 0 and not is_beyond(row, face, k, x + left * dx, y + left * dy):
+        if entered < 0:
+            k = first_exit(row, face, x, y, dx, dy, tie)
+        else:
+            k = next_exit(row, face, entered, x, y, dx, dy, tie)
+        if hit < 0 and not is_beyond(row, face, k, x + left * dx, y + left * dy, tie):
             return ENDED, face, x + left * dx, y + left * dy, dx, dy, 0.0, faces[:count], points[:count]
         faces[count] = face
         if hit >= 0:
@@ -104,21 +109,14 @@ def follow(
             continue
         ax, ay = row[face, 2 * k], row[face, 2 * k + 1]
         ex, ey = row[face, 2 * after(k)] - ax, row[face, 2 * after(k) + 1] - ay
-        way = max(((ax - x) * ey - (ay - y) * ex) / (dx * ey - dy * ex), 0.0)
+        approach = dx * ey - dy * ex
+        along = approach <= TIE * (abs(ex) + abs(ey))  # the line runs along the edge and is on it already
+        way = 0.0 if along else max(((ax - x) * ey - (ay - y) * ex) / approach, 0.0)
         points[count] = x + way * dx, y + way * dy
         onward = link[face, k]
         if onward < 0:
-            return (
-                LEFT_THE_PART,
-                face,
-                x + way * dx,
-                y + way * dy,
-                dx,
-                dy,
-                left - way,
-                faces[:count],
-                points[:count],
-            )
+            x, y = points[count]
+            return LEFT_THE_PART, face, x, y, dx, dy, left - way, faces[:count], points[:count]
         count += 1
         x, y, dx, dy = turn_at(row, face, k, x, y, dx, dy)
         x, y, dx, dy = step_over(row, face, k, x + way * dx, y + way * dy, dx, dy)

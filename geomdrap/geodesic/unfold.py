@@ -8,7 +8,6 @@ nothing is accumulated on the way.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -24,8 +23,10 @@ TOO_MANY_FACES = 2
 # index counts from the end of an array; that check would cost a third of the walk.
 NO_SIGN = 0x3FFFFFFF
 
-OUTSIDE = 1e-12  # of the face's size: distance beyond an inner edge below which a point may count as on it
-ON_RIM = 1e-9  # of the length: an end no further than this beyond the rim is on it, on every machine
+# Of the length of a line: what is nearer than this to a corner, an edge or the rim counts as on it; a line through
+# a corner passes it on the same side every time. Rounding must not decide: on meshes with rows of facets lines run
+# along edges and through corners all the time, and the same part in metres, or on another machine, has other digits.
+TIE = 1e-9
 
 # For each of the eight ways in which the corners of a face lie left or right of a line, two bits: the edge that
 # begins right of it and ends left, 3 where there is none. A table, because the branches could not be predicted.
@@ -59,7 +60,7 @@ def first_exit_at_rim(row: np.ndarray, f: int, x: float, y: float, dx: float, dy
         ax, ay = row[f, 2 * k], row[f, 2 * k + 1]
         ex, ey = row[f, 2 * after(k)] - ax, row[f, 2 * after(k) + 1] - ay
         approach = dx * ey - dy * ex
-        if approach > 0.0:
+        if approach > TIE * (abs(ex) + abs(ey)):
             way = max(((ax - x) * ey - (ay - y) * ex) / approach, 0.0)
             if way < best_way:
                 best_way = way
@@ -68,56 +69,47 @@ def first_exit_at_rim(row: np.ndarray, f: int, x: float, y: float, dx: float, dy
 
 
 @inlined
-def first_exit(row: np.ndarray, f: int, x: float, y: float, dx: float, dy: float) -> int:
+def first_exit(row: np.ndarray, f: int, x: float, y: float, dx: float, dy: float, tie: float) -> int:
     """Edge through which a line from a point in (or on the rim of) face f leaves it.
 
     That edge begins right of the line and ends left of it.
     """
     code = (
-        (side_of(row, f, 0, x, y, dx, dy) > 0.0) * 2
-        + (side_of(row, f, 1, x, y, dx, dy) > 0.0) * 4
-        + (side_of(row, f, 2, x, y, dx, dy) > 0.0) * 8
+        (side_of(row, f, 0, x, y, dx, dy) > tie) * 2
+        + (side_of(row, f, 1, x, y, dx, dy) > tie) * 4
+        + (side_of(row, f, 2, x, y, dx, dy) > tie) * 8
     )
     k = (EXIT_OF_CODE >> code) & 3
     return k if k < 3 else first_exit_at_rim(row, f, x, y, dx, dy)
 
 
 @inlined
-def next_exit(row: np.ndarray, f: int, entered: int, x: float, y: float, dx: float, dy: float) -> int:
+def next_exit(row: np.ndarray, f: int, entered: int, x: float, y: float, dx: float, dy: float, tie: float) -> int:
     """Edge through which a line leaves a face that it entered over edge ``entered``."""
-    if side_of(row, f, before(entered), x, y, dx, dy) > 0.0:
+    if side_of(row, f, before(entered), x, y, dx, dy) > tie:
         return after(entered)
     return before(entered)
 
 
 @inlined
-def is_beyond(row: np.ndarray, f: int, k: int, x: float, y: float) -> bool:
-    """Whether a point lies on the far side of edge k of face f."""
+def is_beyond(row: np.ndarray, f: int, k: int, x: float, y: float, tie: float) -> bool:
+    """Whether a point lies on the far side of edge k of face f, by more than a tie."""
     ax, ay = row[f, 2 * k], row[f, 2 * k + 1]
-    return (row[f, 2 * after(k)] - ax) * (y - ay) - (row[f, 2 * after(k) + 1] - ay) * (x - ax) < 0.0
+    ex, ey = row[f, 2 * after(k)] - ax, row[f, 2 * after(k) + 1] - ay
+    return ex * (y - ay) - ey * (x - ax) < -tie * (abs(ex) + abs(ey))
 
 
 @inlined
-def hardly_beyond(row: np.ndarray, f: int, k: int, x: float, y: float, least: float) -> bool:
-    """Whether a point lies beyond edge k by less than ``least`` mm."""
-    ax, ay = row[f, 2 * k], row[f, 2 * k + 1]
-    ex, ey = row[f, 2 * after(k)] - ax, row[f, 2 * after(k) + 1] - ay
-    return ex * (y - ay) - ey * (x - ax) >= -least * math.sqrt(ex * ex + ey * ey)
-
-
-@kernel
-def other_exit(
-    row: np.ndarray, link: np.ndarray, f: int, k: int, entered: int, x: float, y: float, least: float
-) -> int:
+def other_exit(row: np.ndarray, f: int, k: int, entered: int, x: float, y: float, tie: float) -> int:
     """The edge that a point on this side of edge k lies beyond all the same, or -1.
 
-    That happens where a line runs along edge k and out over its corner, so that it never crosses that edge. Beyond
-    the rim of the part counts only what is more than ``least`` mm.
+    That happens where a line runs along edge k and out over its corner, so that it never crosses that edge.
     """
-    size = math.sqrt(row[f, 2] * row[f, 2] + row[f, 4] * row[f, 4] + row[f, 5] * row[f, 5])
-    for j in (after(k), before(k)):
-        if j != entered and not hardly_beyond(row, f, j, x, y, OUTSIDE * size if link[f, j] >= 0 else least):
-            return j
+    one, two = after(k), before(k)
+    if one != entered and is_beyond(row, f, one, x, y, tie):
+        return one
+    if two != entered and is_beyond(row, f, two, x, y, tie):
+        return two
     return -1
 
 
@@ -156,13 +148,13 @@ def shoot(
     and the end point lies in the plane of the last face, beyond its rim.
     """
     face &= NO_SIGN
-    k = first_exit(row, face, x, y, dx, dy)
+    tie = TIE * length
+    k = first_exit(row, face, x, y, dx, dy, tie)
     entered = -1
     for _ in range(FACE_LIMIT):
         ex, ey = x + length * dx, y + length * dy
-        beyond = is_beyond(row, face, k, ex, ey)
-        if not beyond or (link[face, k] < 0 and hardly_beyond(row, face, k, ex, ey, ON_RIM * length)):
-            other = other_exit(row, link, face, k, entered, ex, ey, ON_RIM * length)
+        if not is_beyond(row, face, k, ex, ey, tie):
+            other = other_exit(row, face, k, entered, ex, ey, tie)
             if other < 0:
                 return ENDED, face, x, y, dx, dy
             k = other
@@ -173,5 +165,5 @@ def shoot(
         x, y, dx, dy = step_over(row, face, k, x, y, dx, dy)
         face = (onward >> 2) & NO_SIGN
         entered = onward & 3
-        k = next_exit(row, face, entered, x, y, dx, dy)
+        k = next_exit(row, face, entered, x, y, dx, dy, tie)
     return TOO_MANY_FACES, face, x, y, dx, dy
