@@ -94,7 +94,7 @@ def bare_regions(trimmed: Trimmed) -> tuple[BareRegion, ...]:
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    bare = trimmed.kind == 0
+    bare = trimmed.share < 1.0
     if not bare.any():
         return ()
     rows, k = np.nonzero((trimmed.mesh.neighbours >= 0) & bare[:, None])
@@ -103,16 +103,18 @@ def bare_regions(trimmed: Trimmed) -> tuple[BareRegion, ...]:
     n = len(bare)
     graph = coo_array((np.ones(both.sum(), np.int8), (rows[both], beside[both])), shape=(n, n))
     label = connected_components(graph, directed=False)[1]
+    without = trimmed.area * (1.0 - trimmed.share)
+    reason = np.where(trimmed.kind == 0, trimmed.reason, np.uint8(Status.BLANK))  # only a blank ends within facets
     regions = []
     middle = trimmed.mesh.points[trimmed.mesh.triangles].mean(axis=1)
     least = LEAST_BARE * trimmed.area.sum()
-    sizes = np.bincount(label[bare], trimmed.area[bare], n)
+    sizes = np.bincount(label[bare], without[bare], n)
     for group in np.flatnonzero(sizes > least):
         members = np.flatnonzero((label == group) & bare)
-        area = trimmed.area[members]
+        area = without[members]
         center = (middle[members] * area[:, None]).sum(axis=0) / area.sum()
         on_it = middle[members[np.linalg.norm(middle[members] - center, axis=1).argmin()]]
-        weight = np.bincount(trimmed.reason[members], area)
+        weight = np.bincount(reason[members], area)
         regions.append(BareRegion(float(area.sum()), on_it, Status(int(weight.argmax())).reason))
     return tuple(sorted(regions, key=lambda r: -r.area))
 

@@ -15,7 +15,7 @@ from geomdrap.geodesic.compiled import kernel
 
 ROUNDS = 60
 INSIDE = 1e-6  # cells: rounding at the border between two
-OFF = 0.5  # cells: a point further than this from the patch of its cell is not on it
+OFF = 0.2  # cells: a point further than this from the patch of its cell is not on it, or the patch cuts a corner
 
 
 @kernel

@@ -16,6 +16,7 @@ from geomdrap.fields.locate import locate
 from geomdrap.geodesic.compiled import inlined, kernel
 
 BARE, BY_NET, BEYOND = 0, 1, 2
+IS_BLANK, IS_TOO_NARROW = 8, 9
 JUMP = 0.4  # cells: neighbouring values that differ by this much more than they can belong to two sheets
 BEYOND_NET = 2  # cells: corners of the part turned to the yarns stick out by more than one
 MOST_SHEARED = 12.0  # a cell sheared to 85° is that much shorter across than its sides
@@ -168,14 +169,16 @@ def why_not(valid: np.ndarray, status: np.ndarray, refused: np.ndarray, p: float
     frame of one node; ``refused`` (16,) says which statuses stop the strip.
     """
     if math.isnan(p) or math.isnan(q):
-        return 9
+        return IS_TOO_NARROW
     i, j = int(math.floor(p)), int(math.floor(q))
-    stop = 9
-    for k in range(max(i, -1), min(i + 2, status.shape[0] - 1)):
-        for m in range(max(j, -1), min(j + 2, status.shape[1] - 1)):
-            s = status[k + 1, m + 1]
-            if refused[s]:
+    stop = IS_TOO_NARROW
+    for k in range(i, i + 2):
+        for m in range(j, j + 2):
+            s = status[min(max(k + 1, 0), status.shape[0] - 1), min(max(m + 1, 0), status.shape[1] - 1)]
+            if refused[s] and -1 <= k < status.shape[0] - 1 and -1 <= m < status.shape[1] - 1:
                 return s
+            if s == IS_BLANK:
+                stop = IS_BLANK
     for k in range(max(i - BEYOND_NET, 0), min(i + BEYOND_NET + 1, valid.shape[0])):
         for m in range(max(j - BEYOND_NET, 0), min(j + BEYOND_NET + 1, valid.shape[1])):
             if valid[k, m]:

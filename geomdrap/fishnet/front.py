@@ -24,6 +24,7 @@ from geomdrap.fishnet.march import (
 )
 from geomdrap.fishnet.place import (
     MEETS_ITSELF,
+    PRESENT,
     departure,
     has_piece,
     meets_itself,
@@ -171,6 +172,7 @@ def carry_front_on(mesh: Mesh, grid: Grid, i0: int, j0: int) -> int:
     while True:
         sides, i, j, di, dj = next_way_on(mesh, grid, i0, j0, known)
         if sides == 0:
+            say_why(grid)
             return continued
         laid = 0
         while laid < sides and grid.marks[i + (laid + 1) * di, j + (laid + 1) * dj, STATUS] == UNREACHED:
@@ -179,3 +181,44 @@ def carry_front_on(mesh: Mesh, grid: Grid, i0: int, j0: int) -> int:
             laid += 1
         continued += laid > 0
         close_everywhere(mesh, grid)
+
+
+@kernel
+def say_why(grid: Grid) -> None:
+    """Give the nodes around the net that nothing reached the reason of those before them; folds come last."""
+    spread(grid, False)
+    spread(grid, True)
+
+
+@kernel
+def spread(grid: Grid, folds: bool) -> None:
+    """Carry reasons outward, row by row and back, until no node takes one any more."""
+    i0, i1 = max(grid.box[0] - 1, 0), min(grid.box[1] + 1, grid.face.shape[0] - 1)
+    j0, j1 = max(grid.box[2] - 1, 0), min(grid.box[3] + 1, grid.face.shape[1] - 1)
+    changed = True
+    while changed:
+        changed = False
+        for sense in (1, -1):
+            for a in range(i1 - i0 + 1):
+                i = i0 + a if sense > 0 else i1 - a
+                for b in range(j1 - j0 + 1):
+                    j = j0 + b if sense > 0 else j1 - b
+                    if grid.marks[i, j, STATUS] != UNREACHED:
+                        continue
+                    k, m = i - sense, j - sense
+                    why = reason_to_carry(grid.marks[k, j, STATUS], folds) if i0 <= k <= i1 else UNREACHED
+                    if why == UNREACHED and j0 <= m <= j1:
+                        why = reason_to_carry(grid.marks[i, m, STATUS], folds)
+                    if why != UNREACHED:
+                        grid.marks[i, j, STATUS] = why
+                        changed = True
+
+
+@inlined
+def reason_to_carry(status: int, folds: bool) -> int:
+    """The reason that a node beside one with this status takes, UNREACHED for none."""
+    if status in (UNREACHED, PRESENT):
+        return UNREACHED
+    if status in (IS_FOLDED, IS_BEHIND_FOLD):
+        return IS_BEHIND_FOLD if folds else UNREACHED
+    return status
