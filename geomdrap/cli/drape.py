@@ -46,7 +46,7 @@ def drape(
     \b
     Examples:
       geomdrap drape hood.stl
-      geomdrap drape hood.stl --origin -5,5,84.4 --angle 45 --pitch 4 -o hood-45
+      geomdrap drape hemisphere.stl --origin -5,5,84.4 --angle 45 --pitch 4 -o hemisphere-45
       geomdrap drape hood.stl --origin vertex:120 --blank 800x600 --outputs json,dxf --json
     """
     from geomdrap.cli.messages import print_json, say
@@ -61,7 +61,7 @@ def drape(
         result = compute(progress, **asked)
         progress.step("Writing")
         files = write_all(result, folder, outputs, progress.share)
-    say(result.net.warnings, (*result.net.notes, *_left_over(folder, files)), quiet)
+    say(result.warnings, (*result.net.notes, *_left_over(folder, files)), quiet)
     if as_json:
         print_json(as_dict(result, files))
     elif not quiet:

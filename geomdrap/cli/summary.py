@@ -22,7 +22,8 @@ def _lines(result: Drape, files: Mapping[str, Path]) -> Iterator[tuple[str, str]
     size = " x ".join(f"{length:.4g}" for length in net.surface.bounds[1] - net.surface.bounds[0])
     nodes = int((net.points[..., 0] == net.points[..., 0]).sum())
     yield "part", f"{net.surface.source}, {len(net.surface.triangles):,} facets, {size} mm"
-    yield "seed", f"{_point(net.origin)}, warp at {net.angle:g}°"
+    side = f"seen from the side of the normal {_point(net.normal0)}"
+    yield "seed", f"{_point(net.origin)}, warp at {net.angle:g}°, {side}"
     yield "net", f"pitch {net.pitch:g} mm, {nodes:,} nodes, {int(net.cell_valid.sum()):,} cells"
     yield "shear", f"max {shear.max:.2f}°, 95 % below {shear.p95:.2f}°, mean {shear.mean:.2f}°"
     yield (
@@ -41,13 +42,10 @@ def _lines(result: Drape, files: Mapping[str, Path]) -> Iterator[tuple[str, str]
 def _checks(result: Drape) -> Iterator[str]:
     """Name the checks that could be made on this part."""
     checks = result.checks
-    for what, size in (
-        ("sides too long by", f"{checks.edge_error:.1g} of the pitch"),
-        ("nodes off the surface by", f"{checks.off_surface:.1g} mm"),
-        ("shear off the curvature by", f"{checks.curvature_residual:.2g}°"),
-    ):
-        if not size.startswith("nan"):
-            yield f"{what} {size}"
+    yield f"sides too long by {checks.edge_error:.1g} of the pitch"
+    yield f"nodes off the surface by {checks.off_surface:.1g} mm"
+    if checks.curvature_residual is not None:
+        yield f"shear off the curvature by {checks.curvature_residual:.2g}°"
 
 
 def _bare(result: Drape) -> Iterator[tuple[str, str]]:

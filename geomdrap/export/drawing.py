@@ -150,6 +150,7 @@ def note_words(result: Drape) -> list[str]:
     words = [
         f"{Path(net.surface.source).name}: flat pattern, mm, true scale 1:1",
         f"warp at {net.angle:g} deg, origin {', '.join(f'{x + 0.0:.3f}' for x in net.origin)} mm",
+        f"seen from the side of the normal {', '.join(f'{x + 0.0:.3f}' for x in net.normal0)} at the origin",
         f"pitch {net.pitch:.6g} mm, limit angle {result.limit_angle:g} deg",
         f"part {area.part:.1f} mm2, fabric {area.fabric:.1f} mm2",
         f"shear max {statistics.max:.2f} deg, 95th percentile {statistics.p95:.2f} deg",

@@ -89,7 +89,7 @@ def warning_lines(result: Drape) -> list[str]:
             lines.append(f"Bare: {grouped(region.area)} mm² about ({where}): {region.reason}")
         if len(result.bare) > 3:
             lines.append(f"… and {len(result.bare) - 3} smaller bare regions")
-    for warning in result.net.warnings:
+    for warning in result.warnings:
         lines += textwrap.wrap(warning, 190, subsequent_indent="    ")
     if len(lines) > MOST_LINES:
         lines = [

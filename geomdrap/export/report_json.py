@@ -36,6 +36,7 @@ def as_dict(result: Drape, files: Mapping[str, str | Path] | None = None) -> dic
             "part": Path(net.surface.source).name,
             "facets": len(net.surface.triangles),
             "origin": net.origin,
+            "normal": net.normal0,
             "angle": net.angle,
             "pitch": net.pitch,
             "nodes": int(np.isfinite(net.points[..., 0]).sum()),
@@ -48,7 +49,7 @@ def as_dict(result: Drape, files: Mapping[str, str | Path] | None = None) -> dic
             "bare": [_fields(region, "area", "center", "reason") for region in result.bare],
             "absent": absent_counts(result),
             "checks": _fields(result.checks, "edge_error", "off_surface", "curvature_residual"),
-            "warnings": list(net.warnings),
+            "warnings": list(result.warnings),
             "notes": list(net.notes),
             "files": {key: str(name) for key, name in (files or {}).items()},
         }

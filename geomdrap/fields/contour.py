@@ -8,7 +8,7 @@ import numpy as np
 
 from geomdrap.geodesic.compiled import kernel
 
-SAME = 1e-3  # cells: corners that agree this closely across an edge are joined in the flat fabric
+SAME = 0.1  # cells: corners that agree this closely across an edge are joined in the flat fabric, not cut apart
 
 
 @kernel
@@ -103,3 +103,34 @@ def simplify(polygon: np.ndarray, tolerance: float) -> np.ndarray:
         drop = (off <= tolerance) & between & (np.arange(len(points)) % 2 == parity)
         keep[np.flatnonzero(keep)[drop]] = False
     return polygon[keep]
+
+
+@kernel
+def count_crossings(a: np.ndarray, b: np.ndarray) -> int:
+    """Number of pairs of segments a → b (n, 2) that cross each other properly."""
+    count = 0
+    for i in range(len(a)):
+        low_x, high_x = min(a[i, 0], b[i, 0]), max(a[i, 0], b[i, 0])
+        low_y, high_y = min(a[i, 1], b[i, 1]), max(a[i, 1], b[i, 1])
+        for j in range(i):
+            if min(a[j, 0], b[j, 0]) > high_x or max(a[j, 0], b[j, 0]) < low_x:
+                continue
+            if min(a[j, 1], b[j, 1]) > high_y or max(a[j, 1], b[j, 1]) < low_y:
+                continue
+            if turns(a[i], b[i], a[j]) * turns(a[i], b[i], b[j]) < 0.0:
+                count += turns(a[j], b[j], a[i]) * turns(a[j], b[j], b[i]) < 0.0
+    return count
+
+
+@kernel
+def turns(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> float:
+    """Twice the signed area of a triangle."""
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+
+
+def self_crossings(polygons: tuple[np.ndarray, ...]) -> int:
+    """How often closed polygons (k, 2) cross themselves and each other."""
+    if not polygons:
+        return 0
+    ends = [np.roll(p, -1, axis=0) for p in polygons]
+    return int(count_crossings(np.concatenate(polygons), np.concatenate(ends)))

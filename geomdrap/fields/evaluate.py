@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.fields.checks import check_net
+from geomdrap.fields.contour import self_crossings
 from geomdrap.fields.flat import flat_pattern
-from geomdrap.fields.result import Areas, BareRegion, Drape, ShearStatistics
+from geomdrap.fields.result import Areas, BareRegion, Checks, Drape, FlatPattern, ShearStatistics
 from geomdrap.fields.trim import Trimmed, trim
 from geomdrap.fishnet import Status
 
 if TYPE_CHECKING:
     from geomdrap.fishnet import Net
 
+MOST_RESIDUAL = 1.0  # degrees of curvature residual above which the pitch is called coarse
+LEAST_FABRIC = 0.995  # of the draped area: sheared fabric covers less than its own area, never more
 LEAST_BARE = 1e-4  # of the part: smaller bare specks are counted in the coverage but not listed
 
 
@@ -32,16 +35,40 @@ def evaluate(net: Net, limit_angle: float | None = None) -> Drape:
     warp, weft = unit_directions(trimmed)
     shear = np.degrees(np.arcsin(np.clip((warp * weft).sum(axis=1), -1.0, 1.0)))
     faces = _per_face(net, trimmed, warp, weft)
+    flat, checks = flat_pattern(net, trimmed, limit), check_net(net, trimmed)
     return Drape(
         net=net,
         limit_angle=limit,
         **faces,
-        flat=flat_pattern(net, trimmed, limit),
+        flat=flat,
         area=areas(trimmed),
         bare=bare_regions(trimmed),
         statistics=statistics(net, trimmed, shear, limit),
-        checks=check_net(net, trimmed),
+        checks=checks,
+        warnings=(*net.warnings, *doubts(flat, checks, areas(trimmed))),
     )
+
+
+def doubts(flat: FlatPattern, checks: Checks, area: Areas) -> tuple[str, ...]:
+    """Sentences on what of the result should not be trusted as it is."""
+    found = []
+    crossings = self_crossings((*flat.outer, *flat.inner))
+    if crossings:
+        found.append(
+            f"the flat pattern crosses itself in {crossings} places and cannot be cut like this: the fabric shears "
+            "too far or folds there; use another origin or heading, a smaller pitch, or plan a dart"
+        )
+    if checks.curvature_residual is not None and checks.curvature_residual > MOST_RESIDUAL:
+        found.append(
+            f"shear and curvature of the part differ by {checks.curvature_residual:.1f}°: the pitch is coarse for "
+            "the radii of the part; halve it (on a mesh that is fine enough) and compare"
+        )
+    if area.fabric < LEAST_FABRIC * area.draped:
+        found.append(
+            f"the fabric's area of {area.fabric:.6g} mm² is less than the {area.draped:.6g} mm² that it covers, "
+            "which cannot be: the pitch is too coarse for thin walls or sharp edges of the part; use a smaller one"
+        )
+    return tuple(found)
 
 
 def unit_directions(trimmed: Trimmed) -> tuple[np.ndarray, np.ndarray]:

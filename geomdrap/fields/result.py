@@ -85,7 +85,8 @@ class Drape:
 
     Per facet of ``net.surface`` (m,): ``face_shear`` degrees, signed; ``face_warp``, ``face_weft`` (m, 3) unit
     vectors; ``face_thickness`` and ``face_fibre_volume``, factors on the flat fabric's; ``face_coverage`` 0..1;
-    ``face_reason``, a ``Status``: why it is bare. NaN on bare facets.
+    ``face_reason``, a ``Status``: why it is bare. NaN on bare facets. ``warnings`` are the net's, and what the result
+    itself gives reason to doubt.
     """
 
     net: Net
@@ -102,3 +103,4 @@ class Drape:
     bare: tuple[BareRegion, ...]
     statistics: ShearStatistics
     checks: Checks
+    warnings: tuple[str, ...]

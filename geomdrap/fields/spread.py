@@ -18,6 +18,11 @@ from geomdrap.geodesic.compiled import inlined, kernel
 BARE, BY_NET, BEYOND = 0, 1, 2
 IS_BLANK, IS_TOO_NARROW = 8, 9
 JUMP = 0.4  # cells: neighbouring values that differ by this much more than they can belong to two sheets
+OUTSIDE_BLANK, TOO_NARROW, TOO_SHEARED = 8, 9, 10  # values of Status
+LEAST_STRETCH, MOST_STRETCH = (
+    0.5,
+    4.0,
+)  # flat area over area in the strip: 1 / cos(shear) up to 75°, and room for error
 BEYOND_NET = 2  # cells: corners of the part turned to the yarns stick out by more than one
 MOST_SHEARED = 12.0  # a cell sheared to 85° is that much shorter across than its sides
 
@@ -40,6 +45,20 @@ def fits(points: np.ndarray, triangle: np.ndarray, at: np.ndarray, side: float) 
         if abs(at[k, 0] - at[m, 0]) > most or abs(at[k, 1] - at[m, 1]) > most:
             return False
     return True
+
+
+@kernel
+def stretch(points: np.ndarray, triangle: np.ndarray, at: np.ndarray, side: float) -> float:
+    """Flat area over area of a facet with coordinates (3, 2) in cells; negative where it is turned over.
+
+    Between cells of the net it is 1 / cos(shear).
+    """
+    a, b, c = points[triangle[0]], points[triangle[1]], points[triangle[2]]
+    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+    nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    flat = (at[1, 0] - at[0, 0]) * (at[2, 1] - at[0, 1]) - (at[1, 1] - at[0, 1]) * (at[2, 0] - at[0, 0])
+    return flat * side * side / math.sqrt(nx * nx + ny * ny + nz * nz)
 
 
 @kernel
@@ -162,7 +181,7 @@ def steps_of(tangent: np.ndarray, way: np.ndarray) -> tuple[float, float]:
 
 
 @kernel
-def why_not(valid: np.ndarray, status: np.ndarray, refused: np.ndarray, p: float, q: float) -> int:
+def why_not(valid: np.ndarray, status: np.ndarray, refused: np.ndarray, blank: np.ndarray, p: float, q: float) -> int:
     """0 where the strip beyond the net may reach (p, q), else the status that stops it.
 
     It may reach BEYOND_NET cells further than the net, but not past a fold. ``status`` (nu + 2, nv + 2) has a
@@ -198,6 +217,7 @@ def continue_beyond(
     valid: np.ndarray,
     status: np.ndarray,
     refused: np.ndarray,
+    blank: np.ndarray,
     side: float,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Coordinates at the corners of all facets, in the net and in the strip beyond it.
@@ -250,13 +270,15 @@ def continue_beyond(
                 p, q = known[0], known[1]
                 stop = 0
             else:
-                stop = why_not(valid, status, refused, p, q)
+                stop = why_not(valid, status, refused, blank, p, q)
+            at[g, o, 0], at[g, o, 1] = p, q
+            if stop == 0 and not LEAST_STRETCH < stretch(points, triangles[g], at[g], side) < MOST_STRETCH:
+                stop = TOO_SHEARED
             if stop != 0:
                 at[g] = np.nan
                 tangent[g] = np.nan
                 stopped[g] = stop
                 continue
-            at[g, o, 0], at[g, o, 1] = p, q
             if math.isnan(known[0]):
                 vertex_at[triangles[g, o], 0], vertex_at[triangles[g, o], 1] = p, q
             kind[g] = BEYOND

@@ -14,6 +14,8 @@ from geomdrap.fishnet import Status
 if TYPE_CHECKING:
     from geomdrap.fishnet import Net
 
+FINE = 1.5  # cells: longest edge of a piece of a facet
+NEAR_PIECES = 8  # pieces of facets to look through for one that a node lies on
 REFUSED = np.zeros(16, np.bool_)
 REFUSED[[Status.FOLDED, Status.BEHIND_FOLD, Status.NOT_CLOSED]] = True
 
@@ -39,7 +41,7 @@ class Trimmed:
 def trim(net: Net) -> Trimmed:
     """Spread the net's fabric coordinates over the part, out to its rim or to the blank's."""
     part = net.surface
-    mesh = refine(part.points, part.triangles, part.neighbours, part.neighbour_edge, net.pitch)
+    mesh = refine(part.points, part.triangles, part.neighbours, part.neighbour_edge, FINE * net.pitch)
     cross = np.cross(
         mesh.points[mesh.triangles[:, 1]] - mesh.points[mesh.triangles[:, 0]],
         mesh.points[mesh.triangles[:, 2]] - mesh.points[mesh.triangles[:, 0]],
@@ -61,7 +63,7 @@ def trim(net: Net) -> Trimmed:
     )
     at, kind, tangent, stopped = continue_beyond(
         mesh.points, mesh.triangles, mesh.neighbours, mesh.neighbour_edge, part.normals[mesh.parent],
-        vertex_at, net.yarns, net.lattice_valid, net.status_around, REFUSED, net.pitch,
+        vertex_at, net.yarns, net.lattice_valid, net.status_around, REFUSED, _blank_in_cells(net), net.pitch,
     )  # fmt: skip
     at = np.array([net.u[0], net.v[0]]) + at * net.pitch
     share = (kind > 0).astype(float)
@@ -73,6 +75,14 @@ def trim(net: Net) -> Trimmed:
     reason = _spread_reasons(reason, mesh.neighbours, net)
     assert len(reason) == m
     return Trimmed(mesh, at, kind, tangent / net.pitch, area, share, reason)
+
+
+def _blank_in_cells(net: Net) -> np.ndarray:
+    """Least and greatest coordinates of the blank along u, then v, in cells from the first node."""
+    if net.reach is None:
+        return np.array([-np.inf, np.inf, -np.inf, np.inf])
+    u, v = net.reach
+    return np.array([-u - net.u[0], u - net.u[0], -v - net.v[0], v - net.v[0]]) / net.pitch
 
 
 def _all_bare(mesh: Refined, area: np.ndarray, why: Status) -> Trimmed:
@@ -91,18 +101,14 @@ def _starts(net: Net, mesh: Refined) -> tuple[np.ndarray, np.ndarray]:
     faces = net.face[i, j]
     if len(mesh.parent) == len(net.surface.triangles):
         return faces.astype(np.int64), np.column_stack([i, j]).astype(float)
-    order = np.argsort(mesh.parent, kind="stable")
-    begin = np.searchsorted(mesh.parent[order], faces)
-    count = np.searchsorted(mesh.parent[order], faces, side="right") - begin
-    within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-    # only the nearest of a split facet's pieces, or large facets would be searched from every node on them
-    pieces = order[np.repeat(begin, count) + within]
-    owner = np.repeat(np.arange(len(faces)), count)
-    middle = mesh.points[mesh.triangles[pieces]].mean(axis=1)
-    away = np.linalg.norm(middle - net.points[i, j][owner], axis=1)
-    ranked = np.lexsort((away, owner))
-    first = ranked[np.unique(owner[ranked], return_index=True)[1]]
-    return pieces[first], np.column_stack([i, j]).astype(float)
+    from scipy.spatial import cKDTree
+
+    # the nearest pieces may belong to the other sheet of a thin wall: only those of the node's own facet count
+    middle = mesh.points[mesh.triangles].mean(axis=1)
+    near = cKDTree(middle).query(net.points[i, j], k=min(NEAR_PIECES, len(middle)))[1].reshape(len(faces), -1)
+    own = mesh.parent[near] == faces[:, None]
+    rows = np.flatnonzero(own.any(axis=1))
+    return near[rows, own[rows].argmax(axis=1)].astype(np.int64), np.column_stack([i, j])[rows].astype(float)
 
 
 def _share_in_blank(at: np.ndarray, reach: tuple[float, float]) -> np.ndarray:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.errors import DrapeError
+from geomdrap.errors import DrapeError, SurfaceError
 from geomdrap.fishnet import seed as seeds
 from geomdrap.fishnet.effect import Effect, after, before
 from geomdrap.fishnet.extent import Extent, first_extent, grow, sides
@@ -17,7 +17,7 @@ from geomdrap.fishnet.grid import PIECES, Grid, Status, empty_grid
 from geomdrap.fishnet.march import fill_quadrants, lay_generators
 from geomdrap.fishnet.net import Net, cells_of
 from geomdrap.fishnet.pitch import check_pitch, choose_pitch, coarse_facets
-from geomdrap.fishnet.place import all_in_space, place_seed
+from geomdrap.fishnet.place import APART, ONE_SHEET, all_in_space, place_seed
 from geomdrap.fishnet.shear import shears, yarn_directions
 from geomdrap.geodesic.mesh import Mesh, mesh_of
 
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 
+FAR = 1e5  # part's diagonals from the origin: beyond, rounding reaches what ``TIE`` tells apart
+SHARP_RAD = 0.2  # deficit of a vertex round which stretches of the net can meet within a few cells
+MANY = 25.0  # cells across a part above which it cannot go round within a few of them
 SPREAD = 2.0  # cells: the facets' curvature is spread no further, which is below what the net resolves
 
 
@@ -60,24 +63,27 @@ def drape(
     face, point, distance = seeds.locate(surface, origin)
     part = surface.only_component(face)
     part.require_drapable()
+    _require_digits(part)
     pitch, notes = (check_pitch(part, pitch), ()) if pitch is not None else choose_pitch(part)
     _check_distance(surface, origin, distance, pitch, project)
     mesh = mesh_of(part.lidded, SPREAD * pitch)
-    start = seeds.plant(part, point, angle, mesh, reference, fabric.weft_angle)
+    heading = math.fmod(angle, 360.0)
+    start = seeds.plant(part, point, heading, mesh, reference, fabric.weft_angle)
     extent = first_extent(part, start, pitch, reach)
     while True:
-        grid = _march(mesh, start, extent, pitch, fabric)
+        grid = _march(mesh, start, extent, pitch, fabric, one_sheet(part, pitch))
         larger = grow(extent, grid, pitch)
         if larger == extent:
             break
         extent = larger
+    _require_cells(grid, part, pitch)
     net = _as_net(surface, part, start, angle, pitch, reach, fabric, extent, mesh, grid, notes)
     return after(effects, net)
 
 
-def _march(mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric) -> Grid:
+def _march(mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric, one_sheet: int) -> Grid:
     """Seed, generators (α-nodes), cells (β-nodes), and the front carried on."""
-    grid = empty_grid(*sides(extent, pitch))
+    grid = empty_grid(*sides(extent, pitch), one_sheet)
     i0, j0 = extent.west, extent.south
     weft_rad = math.radians(fabric.weft_angle)
     place_seed(mesh, grid, i0, j0, start.face, *_seed_in_frame(mesh, start), weft_rad)
@@ -86,6 +92,36 @@ def _march(mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: 
     fill_quadrants(mesh, grid, i0, j0)
     carry_front_on(mesh, grid, i0, j0)
     return grid
+
+
+def _require_cells(grid: Grid, surface: Surface, pitch: float) -> None:
+    """Raise DrapeError where the net has no cell to speak of."""
+    if grid.box[1] == grid.box[0] or grid.box[3] == grid.box[2]:
+        raise DrapeError(
+            f"no cell of {pitch:g} mm closes on {surface.source} from this origin and heading: use a smaller pitch, "
+            "or move the origin away from the rim and out of corners (--origin x,y,z)"
+        )
+
+
+def unit_hint(surface: Surface) -> tuple[str, ...]:
+    """A warning where the part's size looks like another unit."""
+    return (surface.findings.unit_hint,) if surface.findings.unit_hint else ()
+
+
+def _require_digits(surface: Surface) -> None:
+    """Raise SurfaceError for a part so far from the origin that its coordinates have too few digits left."""
+    away = float(np.abs(surface.bounds).max())
+    if away > FAR * surface.diagonal:
+        raise SurfaceError(
+            f"{surface.source} lies {away:.3g} mm from the origin, too far for a size of {surface.diagonal:.6g} mm: "
+            "its coordinates have too few digits; move it closer to the origin"
+        )
+
+
+def one_sheet(surface: Surface, pitch: float) -> int:
+    """How far apart in i or j nodes may be for the net to be taken for one sheet there without a closer look."""
+    sharp = bool((np.abs(surface.deficits) > SHARP_RAD).any())
+    return APART if sharp or pitch > surface.diagonal / MANY else ONE_SHEET
 
 
 def _seed_in_frame(mesh: Mesh, start: seeds.Seed) -> tuple[float, float, float, float]:
@@ -103,7 +139,7 @@ def _check_distance(surface: Surface, origin: seeds.Origin, distance: float, pit
     if distance > pitch and not project:
         raise DrapeError(
             f"the origin lies {distance:.6g} mm from {surface.source}, more than the pitch of {pitch:.6g} mm; "
-            "move it, or use project=True (--project) to take the nearest point"
+            "move it, or allow the nearest point with --project (project=True)"
         )
 
 
@@ -121,7 +157,7 @@ def _as_net(
     notes: tuple[str, ...],
 ) -> Net:
     """Cut the grid to the nodes that are there and turn it into a Net."""
-    i0, i1, j0, j1 = (int(k) for k in grid.box)
+    i0, i1, j0, j1 = (int(k) for k in grid.box[:4])
     near = np.s_[i0 : i1 + 1, j0 : j1 + 1]
     face = grid.face[near] - 1
     lattice = all_in_space(mesh, grid, i0, i1 + 1, j0, j1 + 1)
@@ -163,5 +199,5 @@ def _as_net(
         cell_shear=cell_shear,
         shear=shear,
         notes=notes,
-        warnings=coarse_facets(part, pitch),
+        warnings=(*unit_hint(surface), *coarse_facets(part, pitch)),
     )

@@ -34,7 +34,7 @@ class Extent:
 
     def status_around(self, grid: Grid) -> np.ndarray:
         """Status of the nodes and of a frame of one node around them; beyond a full grid: beyond the blank."""
-        i0, i1, j0, j1 = (int(k) for k in grid.box)
+        i0, i1, j0, j1 = (int(k) for k in grid.box[:4])
         padded = np.full((grid.face.shape[0] + 2, grid.face.shape[1] + 2), np.uint8(Status.BLANK))
         padded[1:-1, 1:-1] = grid.marks[..., STATUS]
         return padded[i0 : i1 + 3, j0 : j1 + 3].copy()
@@ -84,7 +84,7 @@ def sides(extent: Extent, pitch: float) -> tuple[np.ndarray, np.ndarray]:
 def grow(extent: Extent, grid: Grid, pitch: float) -> Extent:
     """A larger extent where the net reached the border of the grid before that of the blank, else the same one."""
     nu, nv = grid.face.shape
-    i0, i1, j0, j1 = grid.box
+    i0, i1, j0, j1 = grid.box[:4]
     reached = (i1 == nu - 1, i0 == 0, j1 == nv - 1, j0 == 0)
     now = (extent.east, extent.west, extent.north, extent.south)
     if not any(r and n < m for r, n, m in zip(reached, now, extent.limits, strict=True)):

@@ -21,6 +21,7 @@ class Status(IntEnum):
     NOT_CLOSED = 7
     BLANK = 8
     TOO_NARROW = 9
+    TOO_SHEARED = 10
 
     @property
     def reason(self) -> str:
@@ -38,6 +39,7 @@ _REASONS = {
     Status.MEETS_ITSELF: "the net meets itself here",
     Status.NOT_CLOSED: "no point of the surface closes the cell",
     Status.BLANK: "beyond the blank",
+    Status.TOO_SHEARED: "sheared too far for the net to be carried on to the rim",
     Status.TOO_NARROW: "narrower than the pitch: use a smaller one",
 }
 
@@ -51,7 +53,8 @@ class Grid(NamedTuple):
     1: warp to i + 1, bit 2: weft to j + 1); and a bit per sense of march in which the node's cell was attempted.
     ``sides_u`` (nu - 1,) and ``sides_v`` (nv - 1,) are the lengths of the cell sides, mm. ``bucket`` and
     ``following`` are the spatial hash in which the net looks for itself (links are (i << 32 | j) + 1); ``box``
-    holds the least and greatest i, then j, of the nodes. Few arrays: each costs time at every call of a kernel.
+    holds the least and greatest i, then j, of the nodes, and the spread of one sheet (see ``place``). Few arrays,
+    because each costs time at every call of a kernel.
     """
 
     face: np.ndarray
@@ -70,7 +73,7 @@ STATUS, PIECES, TRIED = 0, 1, 2  # columns of Grid.marks
 BYTES_PER_NODE = 4 + 10 * 8 + 3 + 8 + 10 + 24 + 16  # grid, hash chain and buckets, points, shears
 
 
-def empty_grid(sides_u: np.ndarray, sides_v: np.ndarray) -> Grid:
+def empty_grid(sides_u: np.ndarray, sides_v: np.ndarray, one_sheet: int) -> Grid:
     """Grid of (len(sides_u) + 1, len(sides_v) + 1) absent nodes; memory is taken only where it is touched."""
     shape = (len(sides_u) + 1, len(sides_v) + 1)
     buckets = 1 << max(8, int(np.ceil(np.log2(shape[0] * shape[1]))) - 2)
@@ -82,5 +85,5 @@ def empty_grid(sides_u: np.ndarray, sides_v: np.ndarray) -> Grid:
         sides_v=np.ascontiguousarray(sides_v, dtype=float),
         bucket=np.zeros((buckets, 5), np.int64),
         following=np.zeros(shape, np.int64),
-        box=np.array([shape[0], -1, shape[1], -1]),
+        box=np.array([shape[0], -1, shape[1], -1, one_sheet]),
     )

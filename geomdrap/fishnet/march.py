@@ -232,7 +232,7 @@ def close_everywhere(mesh: Mesh, grid: Grid) -> None:
     while gained:
         gained = 0
         for su, sv in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
-            i0, i1, j0, j1 = grid.box
+            i0, i1, j0, j1 = grid.box[0], grid.box[1], grid.box[2], grid.box[3]
             if su < 0:
                 i0, i1 = i1, i0
             if sv < 0:

@@ -29,9 +29,11 @@ WEFT_PIECE = 2
 # sheared by 80° still keep nodes that are 4 apart 1.4 sides away from each other.
 NEAR = 0.75
 SHEET = 0.35
+ROUND_EDGE = 0.5  # sides: nodes this close are on one sheet round an edge of up to 107°, too
 APART = 3
 # Space is hashed in cubes of CUBE sides, each with the range of i and j that it holds: as long as that is what one
-# sheet of little shear gives, its nodes need not be looked at one by one.
+# sheet of little shear gives (ONE_SHEET), its nodes need not be looked at one by one. Where the part is so sharp or
+# so small that stretches of the net may meet within that range, they always are (``Grid.box[4]`` is APART).
 CUBE = 4.0
 ONE_SHEET = 7
 HEAD, LEAST_I, MOST_I, LEAST_J, MOST_J = 0, 1, 2, 3, 4  # columns of Grid.bucket
@@ -63,6 +65,10 @@ def is_near_stranger(
                 ox, oy, oz = normal_of(mesh.frames, other)
                 if ox * nx + oy * ny + oz * nz > 0.5:
                     return True
+            if away2 < (ROUND_EDGE * side) ** 2:
+                ox, oy, oz = normal_of(mesh.frames, other)
+                if ox * nx + oy * ny + oz * nz > -0.3:
+                    return True
     return False
 
 
@@ -74,6 +80,7 @@ def meets_itself(
     mask = len(grid.bucket) - 1
     per = 1.0 / (CUBE * side)
     reach = NEAR / CUBE
+    one_sheet = grid.box[4]
     x, y, z = px * per, py * per, pz * per
     found = False
     for a in range(math.floor(x - reach), math.floor(x + reach) + 1):
@@ -81,10 +88,10 @@ def meets_itself(
             for c in range(math.floor(z - reach), math.floor(z + reach) + 1):
                 key = bucket_of(a, b, c, mask)
                 if grid.bucket[key, HEAD] > 0 and (
-                    i - grid.bucket[key, LEAST_I] > ONE_SHEET
-                    or grid.bucket[key, MOST_I] - i > ONE_SHEET
-                    or j - grid.bucket[key, LEAST_J] > ONE_SHEET
-                    or grid.bucket[key, MOST_J] - j > ONE_SHEET
+                    i - grid.bucket[key, LEAST_I] > one_sheet
+                    or grid.bucket[key, MOST_I] - i > one_sheet
+                    or j - grid.bucket[key, LEAST_J] > one_sheet
+                    or grid.bucket[key, MOST_J] - j > one_sheet
                 ):
                     found = found or is_near_stranger(mesh, grid, key, i, j, face, px, py, pz, side)
     return found

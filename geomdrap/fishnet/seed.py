@@ -56,6 +56,8 @@ def locate(surface: Surface, origin: Origin) -> tuple[int, np.ndarray, float]:
     target = surface.centroid if isinstance(origin, str) else _vector(origin)
     if target.shape != (3,) or not np.isfinite(target).all():
         raise DrapeError(f"origin {origin} is not three finite numbers x, y, z in mm")
+    if np.abs(target).max() > 1e6 * max(float(np.abs(surface.bounds).max()), surface.diagonal):
+        raise DrapeError(f"origin {origin} lies nowhere near {surface.source}; check its unit (mm)")
     near = surface.nearest(target[None])
     return int(near.face[0]), near.point[0], float(near.distance[0])
 

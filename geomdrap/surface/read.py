@@ -40,6 +40,8 @@ def read_surface(
         face_numbers=raw.face_numbers,
         notes=raw.notes,
     )
+    if path.suffix.lower() == ".stl":
+        surface = surface.numbered_as_welded()  # the points of an STL file have no numbers of their own
     return surface.flipped() if flip else surface
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -210,6 +211,11 @@ class Surface:
         if self.n_components == 1:
             return self
         mesh = take_component(self._mesh, int(self.component[face]))
+        return Surface._of(mesh, self.source, self.notes, self.findings)
+
+    def numbered_as_welded(self) -> Surface:
+        """The same part, with its own vertex numbers taken for those of the input."""
+        mesh = replace(self._mesh, vertex_of_input=np.arange(len(self.points)))
         return Surface._of(mesh, self.source, self.notes, self.findings)
 
     def flipped(self) -> Surface:

@@ -12,7 +12,7 @@ SPLIT = 4  # sub-cells and sub-facets a side: how finely curvature is counted in
 
 
 def vertex_deficits(surface):
-    """Angle deficit (n,) in degrees, zero on the rim, and the angles of the faces (m, 3) in degrees."""
+    """Angle deficit (n,) in degrees, NaN on the rim where it is not known, and the angles of the faces (m, 3) in degrees."""
     corners = surface.points[surface.triangles]
     angles = np.empty(surface.triangles.shape)
     rim = np.zeros(len(surface.points), bool)
@@ -23,7 +23,7 @@ def vertex_deficits(surface):
         open_edge = surface.neighbours[:, k] < 0
         rim[surface.triangles[open_edge, k]] = rim[surface.triangles[open_edge, (k + 1) % 3]] = True
     total = np.bincount(surface.triangles.ravel(), angles.ravel(), len(surface.points))
-    return np.where(rim, 0.0, 360.0 - total), angles, total
+    return np.where(rim, np.nan, 360.0 - total), angles, total
 
 
 def curvature_samples(surface):

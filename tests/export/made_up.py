@@ -123,6 +123,7 @@ def made_up_drape(
     )
     return SimpleNamespace(
         net=net,
+        warnings=tuple(warnings),
         limit_angle=limit,
         face_shear=face_shear,
         flat=flat,

@@ -37,6 +37,7 @@ def square_ply(cells: int = 4, pitch: float = 10.0, facets: Surface | None = Non
     net = Record(
         surface=surface,
         origin=np.zeros(3),
+        normal0=np.array([0.0, 0.0, 1.0]),
         angle=30.0,
         pitch=pitch,
         u=line,
@@ -58,6 +59,7 @@ def _evaluated(net: Record) -> Record:
     shear[-1] = np.nan if m > 2 else shear[-1]
     return Record(
         net=net,
+        warnings=net.warnings,
         limit_angle=50.0,
         face_shear=shear,
         face_warp=np.tile([1.0, 0.0, 0.0], (m, 1)),

@@ -1,0 +1,137 @@
+"""Areas: of the part, of the fabric on it, of its flat pattern; exact where the part unrolls, second order elsewhere."""
+
+import numpy as np
+import pytest
+from made_parts import cube, plate_with_holes, square_tube
+
+import geomdrap as gd
+from geomdrap.fields.contour import signed_area
+from geomdrap.surface import Surface, shapes
+
+TWO_TRIANGLES = Surface([[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]], [[0, 1, 2], [0, 2, 3]])
+
+
+def draped(surface, origin, angle, pitch, **options):
+    return gd.evaluate(gd.drape(surface, origin, angle, pitch, **options))
+
+
+def assert_fabric_is_the_part(result, within):
+    area = result.area
+    assert area.draped == pytest.approx(area.part, rel=1e-12)
+    assert area.coverage == pytest.approx(1.0, abs=1e-12)
+    assert area.fabric == pytest.approx(area.part, rel=within)
+    assert result.flat.area == pytest.approx(area.fabric, rel=1e-6)
+    assert result.bare == ()
+
+
+@pytest.mark.parametrize("angle", [0.0, 13.0, 45.0, 77.7, 200.0])
+@pytest.mark.parametrize("origin", ["centroid", (149.0, -99.0, 0.0), (-150.0, 20.0, 0.0)])
+def test_a_plane_takes_its_own_area_of_fabric_from_any_seed_at_any_heading(origin, angle):
+    result = draped(shapes.plane(300.0, 200.0, 10.0), origin, angle, 7.0)
+    assert_fabric_is_the_part(result, 1e-9)
+    assert len(result.flat.outer) == 1
+    assert result.flat.inner == ()
+
+
+@pytest.mark.parametrize("angle", [0.0, 20.0, 45.0, 100.0])
+@pytest.mark.parametrize("origin", [(0.0, 0.0, 100.0), (-140.0, 90.0, 30.0)])
+def test_a_cylinder_takes_its_own_area_of_fabric(origin, angle):
+    result = draped(shapes.cylinder(100.0, 300.0, 5.0, 180.0), origin, angle, 5.0, project=True)
+    assert_fabric_is_the_part(result, 1e-4)
+
+
+@pytest.mark.parametrize("angle", [0.0, 33.0, 45.0])
+@pytest.mark.parametrize("origin", [(-100.0, -100.0, 0.0), (150.0, -150.0, 0.0), (-40.0, 200.0, 0.0)])
+def test_a_flat_l_takes_its_own_area_of_fabric(origin, angle):
+    result = draped(shapes.l_shape(radius=np.inf), origin, angle, 7.0)
+    assert_fabric_is_the_part(result, 1e-9)
+    assert len(result.flat.outer) == 1
+
+
+@pytest.mark.parametrize(("angle", "pitch"), [(0.0, 5.0), (31.0, 5.0), (31.0, 0.8), (10.0, 17.0)])
+def test_a_plate_of_two_triangles_is_draped_at_any_pitch(angle, pitch):
+    result = draped(TWO_TRIANGLES, (30.0, 30.0, 0.0), angle, pitch)
+    assert_fabric_is_the_part(result, 1e-9)
+    outline = result.flat.outer[0]
+    size = np.sort(np.linalg.norm(outline - np.roll(outline, 1, axis=0), axis=1))[::-1]
+    assert size[:4] == pytest.approx([100.0, 100.0, 60.0, 60.0], abs=0.01) or len(outline) > 4
+    assert np.abs(outline).max() < np.hypot(70.0, 30.0) + 1e-6
+
+
+def test_a_very_fine_mesh_is_draped_like_a_coarse_one():
+    fine = draped(shapes.plane(100.0, 60.0, 0.7), "centroid", 31.0, 5.0)
+    coarse = draped(shapes.plane(100.0, 60.0, 30.0), "centroid", 31.0, 5.0)
+    assert fine.area.fabric == pytest.approx(coarse.area.fabric, rel=1e-9)
+    assert signed_area(fine.flat.outer[0]) == pytest.approx(6000.0, rel=1e-6)
+
+
+def test_holes_are_inner_contours_of_their_own_area():
+    part = plate_with_holes(((0.0, 0.0, 30.0), (60.0, 60.0, 20.0)))
+    result = draped(part, (-60.0, -50.0, 0.0), 17.0, 5.0)
+    assert_fabric_is_the_part(result, 1e-6)
+    assert len(result.flat.outer) == 1
+    holes = sorted(-signed_area(hole) for hole in result.flat.inner)
+    assert holes == pytest.approx([40.0**2, 60.0**2], rel=1e-5)
+    assert signed_area(result.flat.outer[0]) == pytest.approx(200.0**2, rel=1e-6)
+
+
+@pytest.mark.parametrize("origin", [(30.0, 0.0, 0.0), (31.0, 3.0, 0.0), (100.0, 3.0, 0.0)])
+def test_a_seed_on_the_rim_or_at_a_hole_drapes_all(origin):
+    assert_fabric_is_the_part(draped(plate_with_holes(), origin, 17.0, 5.0), 1e-6)
+
+
+@pytest.mark.parametrize(("angle", "half"), [(0.0, (20.0, 10.0)), (31.0, (20.0, 10.0)), (31.0, (12.3, 8.7))])
+def test_a_blank_on_a_plate_is_draped_in_its_own_size(angle, half):
+    result = draped(TWO_TRIANGLES, (50.0, 30.0, 0.0), angle, 5.0, reach=half)
+    blank = 4.0 * half[0] * half[1]
+    assert result.area.fabric == pytest.approx(blank, rel=1e-9)
+    assert result.area.draped == pytest.approx(blank, rel=1e-6)
+    assert result.flat.area == pytest.approx(blank, rel=1e-9)
+    outline = np.concatenate(result.flat.outer)
+    assert np.abs(outline).max(axis=0) == pytest.approx(half, abs=1e-6)
+    assert sum(b.area for b in result.bare) == pytest.approx(6000.0 - blank, rel=1e-6)
+
+
+def test_a_blank_that_hangs_over_is_cut_at_the_part():
+    result = draped(TWO_TRIANGLES, (50.0, 30.0, 0.0), 0.0, 4.0, reach=(20.0, 80.0))
+    assert result.area.fabric == pytest.approx(40.0 * 60.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("angle", [0.0, 30.0, 45.0])
+def test_a_tube_is_covered_once(angle):
+    for part in (square_tube(), shapes.cylinder(25.0, 200.0, 4.0)):
+        result = draped(part, part.points[0], angle, 4.0)
+        assert result.area.coverage > 0.999
+        assert result.area.fabric == pytest.approx(result.area.draped, rel=2e-3)
+
+
+def test_a_closed_sphere_is_not_covered_twice():
+    result = draped(shapes.icosphere(100.0, 4), (3.0, 7.0, 99.0), 45.0, 5.0, project=True)
+    area = result.area
+    assert area.coverage > 0.95
+    # each piece of fabric lies on a piece of the part that is smaller by the cosine of its shear
+    assert area.draped <= area.fabric <= area.part / np.cos(np.radians(result.statistics.max))
+    lay = result.face_coverage * result.net.surface.areas
+    thicker = np.nansum(lay * result.face_thickness)
+    assert area.fabric == pytest.approx(thicker, rel=0.02)
+
+
+def test_a_cube_is_draped_to_its_darts_and_no_more():
+    area = draped(cube(), (3.0, 7.0, 30.0), 20.0, 4.0).area
+    assert 0.9 < area.coverage <= 1.0
+    assert area.fabric < 1.1 * area.draped
+
+
+@pytest.mark.parametrize("part", ["cap", "saddle"])
+def test_the_fabric_area_is_second_order_in_the_pitch(part):
+    surface = shapes.sphere_cap(100.0, 60.0, 2.5) if part == "cap" else shapes.saddle(200.0, 240.0, 3.0)
+    starts = [((7.0, -11.0, 98.0), 13.0), ((20.0, 5.0, 96.0), 50.0), ((-15.0, 22.0, 96.0), 75.0)]
+    pitches = np.array([20.0, 10.0, 5.0])
+    errors = []
+    for origin, angle in starts:
+        area = [draped(surface, origin, angle, p, project=True).area.fabric for p in (*pitches, 1.5)]
+        errors.append(np.array(area[:-1]) / area[-1] - 1.0)
+    rms = np.sqrt(np.mean(np.square(errors), axis=0))
+    order = np.polyfit(np.log(pitches), np.log(rms), 1)[0]
+    assert order > 1.6
+    assert rms[-1] < 4e-4
