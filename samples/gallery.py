@@ -67,40 +67,49 @@ def visualize(name, drapes, path):
 
 
 def draw_part(axes, drape, colours, view):
-    """The cells of the net on the part, the rest of the part in grey."""
+    """The facets of the part coloured by the shear on them (grey where bare), and the cells of the net over them."""
     net, part = drape.net, drape.net.surface
-    p, draped = net.points, np.isfinite(net.cell_shear)
-    cells = np.stack([p[:-1, :-1], p[1:, :-1], p[1:, 1:], p[:-1, 1:]], axis=2)[draped]
-    bare = part.points[part.triangles[np.isnan(drape.face_shear)]]
-    shades = colours.to_rgba(np.abs(net.cell_shear[draped]))
+    axes.view_init(*view)
+    up, round_z = np.radians(view)
+    toward = np.array([np.cos(up) * np.cos(round_z), np.cos(up) * np.sin(round_z), np.sin(up)])
+    p = net.points + 1.5 * net.pitch * toward  # so that a cell is drawn after the facets under it
+    cells = np.stack([p[:-1, :-1], p[1:, :-1], p[1:, 1:], p[:-1, 1:]], axis=2)[net.cell_valid]
+    facets = part.points[part.triangles]
+    shades = colours.to_rgba(np.abs(drape.face_shear))
+    shades[np.isnan(drape.face_shear)] = 0.8, 0.8, 0.8, 1.0
     axes.add_collection3d(
         Poly3DCollection(
-            [*cells, *bare],
-            facecolors=[*shades, *np.tile([0.8, 0.8, 0.8, 1.0], (len(bare), 1))],
-            edgecolors=[*np.tile([0.0, 0.0, 0.0, 0.5], (len(cells), 1)), *np.zeros((len(bare), 4))],
-            linewidths=0.2,
+            [*facets, *cells],
+            facecolors=np.vstack([shades, np.zeros((len(cells), 4))]),
+            edgecolors=np.vstack([shades, np.tile([0.0, 0.0, 0.0, 0.35], (len(cells), 1))]),
+            linewidths=0.3,
             clip_on=False,
         )
     )
     low, high = part.bounds
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(high - low, zoom=1.15)
-    axes.view_init(*view)
+    axes.set_box_aspect(high - low, zoom=1.3)
     axes.set_axis_off()
 
 
 def draw_pattern(axes, drape, colours):
-    """Outline of the flat pattern, its cells coloured by shear."""
-    net = drape.net
-    for loop in drape.flat.outer:
-        axes.fill(*loop.T, "0.9")  # shows where cells are missing
-    for loop in drape.flat.inner:
-        axes.fill(*loop.T, "w")
-    axes.pcolormesh(net.u, net.v, np.abs(net.cell_shear).T, cmap=colours.cmap, norm=colours.norm)
-    for loop in (*drape.flat.outer, *drape.flat.inner):
-        axes.plot(*np.vstack([loop, loop[:1]]).T, "k-", linewidth=1.0)
+    """The flat pattern coloured by the shear of its cells, out to its contour."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Outline
+    from scipy.ndimage import distance_transform_edt
+
+    net, loops = drape.net, (*drape.flat.outer, *drape.flat.inner)
+    shear = np.pad(np.abs(net.cell_shear), 3, constant_values=np.nan)
+    nearest = distance_transform_edt(np.isnan(shear), return_distances=False, return_indices=True)
+    u, v = (x[0] + net.pitch * np.arange(-3, len(x) + 3) for x in (net.u, net.v))
+    cells = axes.pcolormesh(u, v, shear[tuple(nearest)].T, cmap=colours.cmap, norm=colours.norm)
+    outline = Outline.make_compound_path(*(Outline(np.vstack([k, k[:1]]), closed=True) for k in loops))
+    cells.set_clip_path(axes.add_patch(PathPatch(outline, facecolor="none", edgecolor="k", linewidth=1.0)))
     axes.plot(0.0, 0.0, "k+")
+    low, high = (side(np.concatenate(drape.flat.outer), axis=0) for side in (np.min, np.max))
     axes.set(aspect="equal", xlabel="u, along the warp [mm]", ylabel="v, along the weft [mm]")
+    axes.set(xlim=(low[0] - 3 * net.pitch, high[0] + 3 * net.pitch))
+    axes.set(ylim=(low[1] - 3 * net.pitch, high[1] + 3 * net.pitch))
 
 
 def main(folder):

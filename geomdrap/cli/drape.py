@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -56,9 +56,8 @@ def drape(
     from geomdrap.export.report_json import as_dict, is_incomplete
 
     _check_folder(folder, outputs)
-    announce_compilation(quiet)
     with Progress(quiet) as progress:
-        result = compute(progress, **asked)
+        result = compute(progress, lambda: announce_compilation(quiet), **asked)
         progress.step("Writing")
         files = write_all(result, folder, outputs, progress.share)
     say(result.warnings, (*result.net.notes, *_left_over(folder, files)), quiet)
@@ -92,6 +91,7 @@ def _left_over(folder: Path, files: Mapping[str, Path]) -> Iterator[str]:
 
 def compute(
     progress: Progress,
+    before_drape: Callable[[], None] = lambda: None,
     *,
     part: Path,
     unit: str,
@@ -106,6 +106,7 @@ def compute(
 
     progress.step("Reading")
     surface = gd.read_surface(part, unit=unit, tolerance=tolerance, flip=flip)
+    before_drape()
     progress.step("Draping")
     reach = (blank[0] / 2, blank[1] / 2) if blank else None
     net = gd.drape(surface, reach=reach, **drape_options)

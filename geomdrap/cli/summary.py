@@ -22,7 +22,7 @@ def _lines(result: Drape, files: Mapping[str, Path]) -> Iterator[tuple[str, str]
     size = " x ".join(f"{length:.4g}" for length in net.surface.bounds[1] - net.surface.bounds[0])
     nodes = int((net.points[..., 0] == net.points[..., 0]).sum())
     yield "part", f"{net.surface.source}, {len(net.surface.triangles):,} facets, {size} mm"
-    side = f"seen from the side of the normal {_point(net.normal0)}"
+    side = f"normal {_point(net.normal0)}"
     yield "seed", f"{_point(net.origin)}, warp at {net.angle:g}°, {side}"
     yield "net", f"pitch {net.pitch:g} mm, {nodes:,} nodes, {int(net.cell_valid.sum()):,} cells"
     yield "shear", f"max {shear.max:.2f}°, 95 % below {shear.p95:.2f}°, mean {shear.mean:.2f}°"

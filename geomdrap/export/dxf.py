@@ -33,6 +33,7 @@ def dxf_text(drawing: Drawing) -> str:
         for layer in drawing.layers:
             add_layer(document, layer)
         set_window(document, drawing)
+        sort_classes(document)
         stream = io.StringIO()
         document.write(stream)
     return stream.getvalue()
@@ -58,6 +59,13 @@ def set_window(document: Any, drawing: Drawing) -> None:
     document.set_modelspace_vport(
         height=round(1.05 * max(height, 0.5 * width), 6), center=[round(float(x), 6) for x in middle]
     )
+
+
+def sort_classes(document: Any) -> None:
+    """List the classes by name: ezdxf takes them from a set, whose order changes from one process to the next."""
+    section = document.classes
+    section.add_required_classes(document.dxfversion)
+    section.classes = dict(sorted(section.classes.items()))
 
 
 @contextmanager

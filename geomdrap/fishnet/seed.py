@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.errors import DrapeError
-from geomdrap.geodesic.vertex import total_angle, turn_left
+from geomdrap.geodesic.vertex import ALONG_EDGE, total_angle, turn_left
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -123,7 +123,8 @@ def plant(
         base_rad = _angle_in_fan(surface.lidded, face, vertex, normal, directions[0], around)
         for a in range(4):
             turn = base_rad + (headings_rad[a] - headings_rad[0]) * around / (2.0 * math.pi)
-            start, at, dx, dy = turn_left(*fan, turn % around)
+            turn %= around
+            start, at, dx, dy = turn_left(*fan, turn if turn < around - ALONG_EDGE else 0.0)
             starts[a], places[a] = start, (*mesh.row[start, 2 * at : 2 * at + 2], dx, dy)
     else:
         frame = np.array([surface.e1[face], surface.e2[face]])

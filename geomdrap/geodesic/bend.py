@@ -23,6 +23,7 @@ from geomdrap.geodesic.compiled import kernel
 
 SMOOTH = 4.0  # a deficit up to this multiple of what the neighbours' curvature gives is spread
 LONG = 2.0  # edges longer than this multiple of the shortest one at the vertex take no share
+ROUNDING = 1.0 + 1e-6  # edges of just these lengths are common, and must be taken or left in the same way everywhere
 
 
 @kernel
@@ -95,16 +96,16 @@ def bends(
         angles = corner_angles(r)
         for k in range(3):
             g = neighbours[f, k]
-            if g < 0 or lengths[k] > reach:
+            if g < 0 or lengths[k] > ROUNDING * reach:
                 continue
             a, b = triangles[f, k], triangles[f, (k + 1) % 3]
             beyond = corner_angles(unfolded[g])
             e = neighbour_edge[f, k]
             share_a = share_b = 0.0
-            if lengths[k] <= LONG * shortest[a] and smooth[a] != 0.0:
+            if lengths[k] <= LONG * ROUNDING * shortest[a] and smooth[a] != 0.0:
                 beside = angles[k] + beyond[(e + 1) % 3]
                 share_a = smooth[a] * 0.5 * beside / (2.0 * math.pi - deficit[a])
-            if lengths[k] <= LONG * shortest[b] and smooth[b] != 0.0:
+            if lengths[k] <= LONG * ROUNDING * shortest[b] and smooth[b] != 0.0:
                 beside = angles[(k + 1) % 3] + beyond[e]
                 share_b = smooth[b] * 0.5 * beside / (2.0 * math.pi - deficit[b])
             out[f, k, 0] = share_a

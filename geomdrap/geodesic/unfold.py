@@ -123,14 +123,19 @@ def turn_at(
         return x, y, dx, dy
     right = side_of(row, f, k, x, y, dx, dy)
     across = side_of(row, f, after(k), x, y, dx, dy) - right
-    t = min(max(-right / across, 0.0), 1.0) if across > 0.0 else 0.5
-    half = 0.5 * (start - t * fall)
+    ax, ay = row[f, 2 * k], row[f, 2 * k + 1]
+    bx, by = row[f, 2 * after(k)] - ax, row[f, 2 * after(k) + 1] - ay
+    # a line that grazes the edge must not be turned back over it, and one along it crosses it nowhere in particular
+    most = 0.25 * across / (abs(bx) + abs(by))
+    if most <= TIE:
+        return x, y, dx, dy
+    t = min(max(-right / across, 0.0), 1.0)
+    half = min(max(0.5 * (start - t * fall), -most), most)
     h2 = half * half
     # the rotation with tan(angle / 2) = half is a unit vector exactly, so that lines keep their length
     scale = 1.0 - h2 * (1.0 - h2) if h2 < 1e-6 else 1.0 / (1.0 + h2)
     c, s = (1.0 - h2) * scale, 2.0 * half * scale
-    ax, ay = row[f, 2 * k], row[f, 2 * k + 1]
-    ex, ey = ax + t * (row[f, 2 * after(k)] - ax), ay + t * (row[f, 2 * after(k) + 1] - ay)
+    ex, ey = ax + t * bx, ay + t * by
     px, py = x - ex, y - ey
     return ex + c * px - s * py, ey + s * px + c * py, c * dx - s * dy, s * dx + c * dy
 

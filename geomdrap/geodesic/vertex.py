@@ -11,6 +11,7 @@ from geomdrap.geodesic.compiled import kernel
 from geomdrap.geodesic.mesh import after, before
 
 FAN_LIMIT = 100_000
+ALONG_EDGE = 1e-9  # radians: a direction this close to an edge is along it, in the face before it
 ALONG_RIM = 1e-7  # radians by which a line along the rim may point out of the part
 
 
@@ -51,7 +52,7 @@ def turn_left(row: np.ndarray, link: np.ndarray, face: int, at: int, angle_rad: 
     for _ in range(FAN_LIMIT):
         dx, dy, opening = wedge(row, here, k)
         onward = link[here, before(k)]
-        if left <= opening or (onward < 0 and left <= opening + ALONG_RIM):
+        if left <= opening + (ALONG_RIM if onward < 0 else ALONG_EDGE):
             c, s = math.cos(left), math.sin(left)
             return here, k, c * dx - s * dy, s * dx + c * dy
         if onward < 0:
@@ -85,7 +86,8 @@ def go_straight_through(row: np.ndarray, link: np.ndarray, face: int, at: int, d
     ex, ey, _ = wedge(row, face, at)
     back = math.atan2(ex * -dy - ey * -dx, ex * -dx + ey * -dy)
     if total >= 0.0:
-        return turn_left(row, link, face, at, (back + 0.5 * total) % total)
+        ahead = (back + 0.5 * total) % total
+        return turn_left(row, link, face, at, ahead if ahead < total - ALONG_EDGE else 0.0)
     onward, k, ox, oy = turn_left(row, link, face, at, back + math.pi)
     if onward >= 0:
         return onward, k, ox, oy

@@ -24,7 +24,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """Replace the computation; what it was asked for is in the dictionary."""
     said: dict[str, Any] = {"result": square_ply()}
 
-    def compute(progress: object, **options: Any) -> SimpleNamespace:
+    def compute(progress: object, before_drape: object, **options: Any) -> SimpleNamespace:
         said.update(options)
         return said["result"]
 

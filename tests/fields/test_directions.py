@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 from exact_nets import sphere_shear
 from made_parts import bumpy_sheet
+from scipy.spatial import cKDTree
 
 import geomdrap as gd
+from geomdrap.fields.evaluate import unit_directions
+from geomdrap.fields.spread import BEYOND, BY_NET
 from geomdrap.fields.trim import trim
 from geomdrap.surface import Surface, shapes
 
@@ -50,15 +53,14 @@ def test_on_a_sphere_the_yarns_through_the_seed_follow_great_circles(angle):
 def test_the_shear_of_the_facets_on_a_sphere_is_that_of_the_fabric_there():
     part = shapes.icosphere(100.0, 5)
     net = gd.drape(part, (10.0, 20.0, 95.0), 25.0, 100.0 / 32, (80.0, 80.0), project=True)
-    result = gd.evaluate(net)
     trimmed = trim(net)
-    whole = (trimmed.share == 1.0) & (trimmed.mesh.neighbours >= 0).all(axis=1)
-    assert len(whole) > len(part.triangles) * 0.99
-    u, v = trimmed.at[whole].mean(axis=1).T
-    exact = np.array([sphere_shear([a], [b], 100.0)[0, 0] for a, b in zip(u, v, strict=True)])
-    parent = trimmed.mesh.parent[whole]
-    assert np.abs(result.face_shear[parent] - exact).max() < 2.5  # a facet is 3.5 mm: 1.3° across in the corners
-    assert np.sqrt(np.mean((result.face_shear[parent] - exact) ** 2)) < 0.3
+    shear = np.degrees(np.arcsin((np.prod(unit_directions(trimmed), axis=0)).sum(axis=1)))
+    for kind, rms, most in ((BY_NET, 0.06, 0.8), (BEYOND, 1.5, 6.5)):  # beyond: first order in the pitch
+        on = (trimmed.kind == kind) & (trimmed.share > 0.0)
+        u, v = trimmed.at[on].mean(axis=1).T
+        miss = shear[on] - [sphere_shear([a], [b], 100.0)[0, 0] for a, b in zip(u, v, strict=True)]
+        assert np.abs(miss).max() < most
+        assert np.sqrt(np.mean(miss**2)) < rms
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -84,11 +86,11 @@ def test_turning_the_part_over_turns_the_sign_of_the_shear():
     back = gd.evaluate(gd.drape(part.flipped(), (0.0, 0.0, 0.0), 0.0, 10.0))
     assert np.abs(front.face_shear).max() > 3.0
 
-    def by_place(result):
-        surface = result.net.surface
-        return result.face_shear[np.lexsort(np.round(middles(surface), 6).T)]
-
-    np.testing.assert_allclose(by_place(back), -by_place(front), atol=0.05)
+    tree = cKDTree(middles(front.net.surface))
+    away, same = tree.query(middles(back.net.surface))
+    assert away.max() < 1e-9
+    np.testing.assert_allclose(back.face_shear, -front.face_shear[same], atol=0.3)  # ties of the walk differ
+    np.testing.assert_allclose(back.area.fabric, front.area.fabric, rtol=1e-4)
 
 
 def test_bare_facets_have_no_direction_and_no_shear():
