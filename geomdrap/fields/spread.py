@@ -23,6 +23,7 @@ LEAST_STRETCH, MOST_STRETCH = (
     0.5,
     4.0,
 )  # flat area over area in the strip: 1 / cos(shear) up to 75°, and room for error
+NEARLY_PARALLEL = 0.9  # sine of the shear, 64°
 BEYOND_NET = 2  # cells: corners of the part turned to the yarns stick out by more than one
 MOST_SHEARED = 12.0  # a cell sheared to 85° is that much shorter across than its sides
 
@@ -59,6 +60,16 @@ def stretch(points: np.ndarray, triangle: np.ndarray, at: np.ndarray, side: floa
     nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
     flat = (at[1, 0] - at[0, 0]) * (at[2, 1] - at[0, 1]) - (at[1, 1] - at[0, 1]) * (at[2, 0] - at[0, 0])
     return flat * side * side / math.sqrt(nx * nx + ny * ny + nz * nz)
+
+
+@kernel
+def can_be(ratio: float, tangent: np.ndarray) -> bool:
+    """Whether a facet of the strip can be flat area / area = ``ratio`` under yarns along ``tangent`` (2, 3).
+
+LEAST_STRETCH, MOST_STRETCH = 0.5, 4.0  # flat area over area in the strip: 1 / cos(shear) up to 75°, and room
+    """
+    sine = (tangent[0] * tangent[1]).sum() / math.sqrt((tangent[0] ** 2).sum() * (tangent[1] ** 2).sum())
+    return ratio < MOST_STRETCH and (ratio > LEAST_STRETCH or abs(sine) < NEARLY_PARALLEL)
 
 
 @kernel
@@ -272,7 +283,7 @@ def continue_beyond(
             else:
                 stop = why_not(valid, status, refused, blank, p, q)
             at[g, o, 0], at[g, o, 1] = p, q
-            if stop == 0 and not LEAST_STRETCH < stretch(points, triangles[g], at[g], side) < MOST_STRETCH:
+            if stop == 0 and not can_be(stretch(points, triangles[g], at[g], side), tangent[g]):
                 stop = TOO_SHEARED
             if stop != 0:
                 at[g] = np.nan

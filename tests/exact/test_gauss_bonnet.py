@@ -12,7 +12,7 @@ SPLIT = 4  # sub-cells and sub-facets a side: how finely curvature is counted in
 
 
 def vertex_deficits(surface):
-    """Angle deficit (n,) in degrees, NaN on the rim where it is not known, and the angles of the faces (m, 3) in degrees."""
+    """Angle deficit (n,) in degrees, NaN on the rim where it is not known, and the faces' angles (m, 3) in degrees."""
     corners = surface.points[surface.triangles]
     angles = np.empty(surface.triangles.shape)
     rim = np.zeros(len(surface.points), bool)
@@ -110,7 +110,9 @@ def test_shear_is_the_curvature_between_a_node_and_the_seed(part, angle):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "edge", "pitch"), [("hemisphere", 1.0, 1.0), ("saddle", 1.5, 1.5), ("hood", 4.0, 4.0)])
+@pytest.mark.parametrize(
+    ("name", "edge", "pitch"), [("hemisphere", 1.0, 1.0), ("saddle", 1.5, 1.5), ("hood", 4.0, 4.0)]
+)
 def test_shear_is_the_curvature_on_the_samples_we_ship(name, edge, pitch):
     miss, most = residual(samples.build(name, edge=edge), pitch, 20.0)
     assert len(miss) > 5000
