@@ -19,10 +19,8 @@ BARE, BY_NET, BEYOND = 0, 1, 2
 IS_BLANK, IS_TOO_NARROW = 8, 9
 JUMP = 0.4  # cells: neighbouring values that differ by this much more than they can belong to two sheets
 OUTSIDE_BLANK, TOO_NARROW, TOO_SHEARED = 8, 9, 10  # values of Status
-LEAST_STRETCH, MOST_STRETCH = (
-    0.5,
-    4.0,
-)  # flat area over area in the strip: 1 / cos(shear) up to 75°, and room for error
+# flat area over area in the strip: 1 / cos(shear) up to 75°, and some room
+LEAST_STRETCH, MOST_STRETCH = 0.5, 4.0
 NEARLY_PARALLEL = 0.9  # sine of the shear, 64°
 BEYOND_NET = 2  # cells: corners of the part turned to the yarns stick out by more than one
 MOST_SHEARED = 12.0  # a cell sheared to 85° is that much shorter across than its sides
@@ -66,7 +64,7 @@ def stretch(points: np.ndarray, triangle: np.ndarray, at: np.ndarray, side: floa
 def can_be(ratio: float, tangent: np.ndarray) -> bool:
     """Whether a facet of the strip can be flat area / area = ``ratio`` under yarns along ``tangent`` (2, 3).
 
-LEAST_STRETCH, MOST_STRETCH = 0.5, 4.0  # flat area over area in the strip: 1 / cos(shear) up to 75°, and room
+    Too large a ratio, or too small a one where the yarns are nearly parallel, makes the spikes in a pattern.
     """
     sine = (tangent[0] * tangent[1]).sum() / math.sqrt((tangent[0] ** 2).sum() * (tangent[1] ** 2).sum())
     return ratio < MOST_STRETCH and (ratio > LEAST_STRETCH or abs(sine) < NEARLY_PARALLEL)

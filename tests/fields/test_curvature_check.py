@@ -19,7 +19,7 @@ SMOOTH = {  # the part, the seed, and its fine pitch, mm
     "hood": (lambda: shapes.car_hood(edge=8.0), "centroid", 8.0),
     "bracket": (lambda: shapes.bracket(edge=2.0), "centroid", 2.0),
 }
-MESH = 0.05  # degrees: below, the facets show rather than the pitch
+MESH = 0.07  # degrees: below, the facets show rather than the pitch
 
 
 def residual(part, origin, pitch):

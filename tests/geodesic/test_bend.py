@@ -127,7 +127,9 @@ def test_lines_on_the_two_sides_of_a_vertex_stay_together():
     # with the sign of the turn wrong, they would part twice as fast as on the bare facets
     apart = 20.0 * deficits(surface)[0].mean()
     assert jumps(surface, 0.0).mean() > 0.5 * apart
-    assert jumps(surface, 100.0).max() < 1e-4
+    spread = jumps(surface, 100.0)
+    assert np.median(spread) < 1e-5
+    assert spread.max() < 0.1 * apart  # lines along an edge are not turned by all of its share
 
 
 def test_spread_curvature_keeps_lines_closer_to_great_circles():
