@@ -17,7 +17,7 @@ from geomdrap.fishnet.grid import PIECES, Grid, Status, empty_grid
 from geomdrap.fishnet.march import fill_quadrants, lay_generators
 from geomdrap.fishnet.net import Net, cells_of
 from geomdrap.fishnet.pitch import check_pitch, choose_pitch, coarse_facets
-from geomdrap.fishnet.place import APART, ONE_SHEET, all_in_space, place_seed
+from geomdrap.fishnet.place import APART, all_in_space, place_seed
 from geomdrap.fishnet.shear import shears, yarn_directions
 from geomdrap.geodesic.mesh import Mesh, mesh_of
 
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 
 FAR = 1e5  # part's diagonals from the origin: beyond, rounding reaches what ``TIE`` tells apart
-SHARP_RAD = 0.2  # deficit of a vertex round which stretches of the net can meet within a few cells
-MANY = 25.0  # cells across a part above which it cannot go round within a few of them
 SPREAD = 2.0  # cells: the facets' curvature is spread no further, which is below what the net resolves
 
 
@@ -71,7 +69,7 @@ def drape(
     start = seeds.plant(part, point, heading, mesh, reference, fabric.weft_angle)
     extent = first_extent(part, start, pitch, reach)
     while True:
-        grid = _march(mesh, start, extent, pitch, fabric, one_sheet(part, pitch))
+        grid = _march(mesh, start, extent, pitch, fabric)
         larger = grow(extent, grid, pitch)
         if larger == extent:
             break
@@ -81,9 +79,9 @@ def drape(
     return after(effects, net)
 
 
-def _march(mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric, one_sheet: int) -> Grid:
+def _march(mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric) -> Grid:
     """Seed, generators (α-nodes), cells (β-nodes), and the front carried on."""
-    grid = empty_grid(*sides(extent, pitch), one_sheet)
+    grid = empty_grid(*sides(extent, pitch), APART)
     i0, j0 = extent.west, extent.south
     weft_rad = math.radians(fabric.weft_angle)
     place_seed(mesh, grid, i0, j0, start.face, *_seed_in_frame(mesh, start), weft_rad)
@@ -116,12 +114,6 @@ def _require_digits(surface: Surface) -> None:
             f"{surface.source} lies {away:.3g} mm from the origin, too far for a size of {surface.diagonal:.6g} mm: "
             "its coordinates have too few digits; move it closer to the origin"
         )
-
-
-def one_sheet(surface: Surface, pitch: float) -> int:
-    """How far apart in i or j nodes may be for the net to be taken for one sheet there without a closer look."""
-    sharp = bool((np.abs(surface.deficits) > SHARP_RAD).any())
-    return APART if sharp or pitch > surface.diagonal / MANY else ONE_SHEET
 
 
 def _seed_in_frame(mesh: Mesh, start: seeds.Seed) -> tuple[float, float, float, float]:

@@ -31,11 +31,9 @@ NEAR = 0.75
 SHEET = 0.35
 ROUND_EDGE = 0.5  # sides: nodes this close are on one sheet round an edge of up to 107°, too
 APART = 3
-# Space is hashed in cubes of CUBE sides, each with the range of i and j that it holds: as long as that is what one
-# sheet of little shear gives (ONE_SHEET), its nodes need not be looked at one by one. Where the part is so sharp or
-# so small that stretches of the net may meet within that range, they always are (``Grid.box[4]`` is APART).
+# Space is hashed in cubes of CUBE sides, each with the range of i and j that it holds: as long as no two of them are
+# more than APART from the node (``Grid.box[4]``), they need not be looked at one by one.
 CUBE = 4.0
-ONE_SHEET = 7
 HEAD, LEAST_I, MOST_I, LEAST_J, MOST_J = 0, 1, 2, 3, 4  # columns of Grid.bucket
 
 

@@ -90,13 +90,23 @@ def test_beyond_the_tip_of_a_cone_all_cells_have_its_deficit_as_shear(slope, deg
     assert abs(net.shear[beside]).max() < tolerance
 
 
-@pytest.mark.parametrize("seed", [(-50.0, -41.0, 0.0), (-60.0, -33.0, 0.0), (-30.0, -24.0, 0.0)])
-def test_a_cone_too_steep_for_a_ply_is_found(seed):
+MEETS_FIRST = pytest.mark.xfail(reason="the yarns beside the tip meet before its cell folds", strict=True)
+
+
+@pytest.mark.parametrize(
+    "seed",
+    [(-50.0, -41.0, 0.0), (-60.0, -33.0, 0.0), pytest.param((-30.0, -24.0, 0.0), marks=MEETS_FIRST)],
+)
+def test_a_cone_too_steep_for_a_ply_is_found_as_a_fold(seed):
     surface = shapes.cone(1.0, 150.0, 3.0)
     net = gd.drape(surface, seed, 0.0, 3.0, (100.0, 100.0), project=True)
-    # the cell with the tip folds, unless the yarns on its two sides meet before
-    assert np.isin(net.status, [Status.FOLDED, Status.MEETS_ITSELF]).any()
-    assert (net.status == Status.FOLDED).any() or seed[0] == -30.0
+    assert (net.status == Status.FOLDED).any()
+
+
+@pytest.mark.parametrize("seed", [(-50.0, -41.0, 0.0), (-60.0, -33.0, 0.0), (-30.0, -24.0, 0.0)])
+def test_on_a_cone_too_steep_for_a_ply_nothing_is_drawn_behind_the_tip(seed):
+    surface = shapes.cone(1.0, 150.0, 3.0)
+    net = gd.drape(surface, seed, 0.0, 3.0, (100.0, 100.0), project=True)
     assert np.nanmax(abs(net.cell_shear)) < 90.0
     # behind the tip nothing can lie: that is where the shear would have to be 105.4°
     tip_u, tip_v = tip_in_net(net)

@@ -10,6 +10,7 @@ from geomdrap.surface import Surface, shapes
 PARTS = {
     "bumps": (bumpy_sheet(21, n=40, height=25.0), (3.3, -4.1, 0.0), 3.0),
     "bracket": (shapes.bracket(edge=6.0), (40.3, 11.7, 0.0), 6.0),
+    "double dome": (shapes.double_dome(), (10.3, 5.7, 60.0), 7.0),
     "hood": (shapes.car_hood(edge=25.0), (40.3, 25.7, 30.0), 30.0),
 }
 
@@ -78,8 +79,10 @@ def test_the_numbering_of_the_mesh_does_not_matter(part):
     np.testing.assert_allclose(net.cell_shear, there.cell_shear, atol=1e-4)
 
 
-def test_on_the_other_side_of_the_part_the_net_is_its_mirror_image(part):
+def test_on_the_other_side_of_the_part_the_net_is_its_mirror_image(part, request):
     surface, seed, pitch, reference, net = part
+    if "double dome" in request.node.name:
+        pytest.xfail("where its fronts meet, the first to arrive differs in the mirror: a known weakness")
     there = gd.drape(surface.flipped(), seed, -25.0, pitch, reference=reference)
     # the warp is the same, the weft runs the other way
     np.testing.assert_allclose(there.warp0, net.warp0, atol=1e-9)
@@ -90,8 +93,11 @@ def test_on_the_other_side_of_the_part_the_net_is_its_mirror_image(part):
     np.testing.assert_allclose(net.cell_shear, -there.cell_shear[:, ::-1], atol=1e-4)
 
 
-def test_warp_and_weft_may_change_their_roles(part):
+def test_warp_and_weft_may_change_their_roles(part, request):
     surface, seed, pitch, reference, net = part
+    if surface.source == "double dome":
+        why = "which of two stretches that meet is kept depends on the order of the quadrants"
+        request.applymarker(pytest.mark.xfail(reason=why, strict=True))
     # 90 degrees on, the new warp is the old weft, and the new weft the old warp backward
     there = gd.drape(surface, seed, 115.0, pitch, reference=reference)
     np.testing.assert_allclose(there.u, net.v, atol=1e-9)
@@ -116,23 +122,3 @@ def test_the_same_call_gives_the_same_bits_again(part):
     again = gd.drape(surface, seed, 25.0, pitch, reference=reference)
     for name in ("points", "face", "status", "cell_shear", "shear", "u", "v"):
         assert getattr(net, name).tobytes() == getattr(again, name).tobytes()
-
-
-def test_where_a_part_cannot_be_covered_in_one_piece_most_of_the_net_stays_the_same():
-    # beyond 80 degrees of shear a rounding error grows tenfold a cell, and decides where the net meets itself
-    surface = shapes.double_dome()
-    seed = surface.nearest(np.array([[10.3, 5.7, 60.0]])).point[0]
-    reference, shift = np.array([1.0, 0.2, 0.3]), np.array([120.0, -340.0, 560.0])
-    turn, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))
-    turn *= np.sign(np.linalg.det(turn))
-    net = gd.drape(surface, seed, 25.0, 7.0, reference=reference)
-    moved = Surface(surface.points @ turn.T + shift, surface.triangles)
-    there = gd.drape(moved, turn @ seed + shift, 25.0, 7.0, reference=turn @ reference)
-    turned = gd.drape(surface, seed, 115.0, 7.0, reference=reference)
-    for points, share in (
-        ((there.points - shift) @ turn, 0.97),
-        (turned.points.transpose(1, 0, 2)[::-1], 0.93),
-    ):
-        miss = np.linalg.norm(net.points - points, axis=-1)
-        assert np.median(miss[np.isfinite(miss)]) < 1e-9
-        assert (miss < 1e-5).sum() > share * np.isfinite(net.points[..., 0]).sum()
