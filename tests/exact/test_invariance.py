@@ -15,6 +15,13 @@ PARTS = {
 }
 
 
+def known_to_differ(surface, request):
+    """Expect a failure on the part whose net meets itself: there the senses in which u and v run still show."""
+    if surface.source == "double dome":
+        why = "where the net meets itself, other nodes are left out when u and v run in other senses"
+        request.applymarker(pytest.mark.xfail(reason=why, strict=True))
+
+
 def the_same(a, b, atol, shear=1e-6):
     assert a.points.shape == b.points.shape
     np.testing.assert_array_equal(a.status, b.status)
@@ -95,9 +102,7 @@ def test_on_the_other_side_of_the_part_the_net_is_its_mirror_image(part, request
 
 def test_warp_and_weft_may_change_their_roles(part, request):
     surface, seed, pitch, reference, net = part
-    if surface.source == "double dome":
-        why = "which of two stretches that meet is kept depends on the order of the quadrants"
-        request.applymarker(pytest.mark.xfail(reason=why, strict=True))
+    known_to_differ(surface, request)
     # 90 degrees on, the new warp is the old weft, and the new weft the old warp backward
     there = gd.drape(surface, seed, 115.0, pitch, reference=reference)
     np.testing.assert_allclose(there.u, net.v, atol=1e-9)

@@ -92,7 +92,7 @@ def words_on(figure):
 
 
 def test_the_page_says_what_was_draped_and_how():
-    words = " | ".join(words_on(picture.draw(made_up_drape(source="/tmp/x/bonnet.stl", pitch=8.0))))
+    words = " | ".join(words_on(picture.draw(made_up_drape(source="parts/x/bonnet.stl", pitch=8.0))))
     for expected in (
         "bonnet.stl",
         "warp at 0°",
