@@ -81,11 +81,3 @@ def locate(
             return max(out_p, out_q) <= INSIDE and away2 <= (OFF * side) ** 2, p, q
         i, j = k, m
     return False, p, q
-
-
-@kernel
-def corner_weights(p: float, q: float, shape: tuple[int, int]) -> tuple[int, int, float, float]:
-    """Low corner of the cell and the shares within it, for interpolation between nodes."""
-    i = min(max(int(math.floor(p)), 0), shape[0] - 2)
-    j = min(max(int(math.floor(q)), 0), shape[1] - 2)
-    return i, j, min(max(p - i, 0.0), 1.0), min(max(q - j, 0.0), 1.0)

@@ -16,9 +16,8 @@ from geomdrap.fields.locate import locate
 from geomdrap.geodesic.compiled import inlined, kernel
 
 BARE, BY_NET, BEYOND = 0, 1, 2
-IS_BLANK, IS_TOO_NARROW = 8, 9
 JUMP = 0.4  # cells: neighbouring values that differ by this much more than they can belong to two sheets
-OUTSIDE_BLANK, TOO_NARROW, TOO_SHEARED = 8, 9, 10  # values of Status
+IS_BLANK, IS_TOO_NARROW, IS_TOO_SHEARED = 8, 9, 10  # values of Status
 # flat area over area in the strip: 1 / cos(shear) up to 75°, and some room
 LEAST_STRETCH, MOST_STRETCH = 0.5, 4.0
 NEARLY_PARALLEL = 0.9  # sine of the shear, 64°
@@ -190,14 +189,14 @@ def steps_of(tangent: np.ndarray, way: np.ndarray) -> tuple[float, float]:
 
 
 @kernel
-def why_not(valid: np.ndarray, status: np.ndarray, refused: np.ndarray, blank: np.ndarray, p: float, q: float) -> int:
+def why_not(valid: np.ndarray, status: np.ndarray, refused: np.ndarray, p: float, q: float) -> int:
     """0 where the strip beyond the net may reach (p, q), else the status that stops it.
 
     It may reach BEYOND_NET cells further than the net, but not past a fold. ``status`` (nu + 2, nv + 2) has a
     frame of one node; ``refused`` (16,) says which statuses stop the strip.
     """
     if math.isnan(p) or math.isnan(q):
-        return IS_TOO_NARROW
+        return IS_TOO_SHEARED
     i, j = int(math.floor(p)), int(math.floor(q))
     stop = IS_TOO_NARROW
     for k in range(i, i + 2):
@@ -226,7 +225,6 @@ def continue_beyond(
     valid: np.ndarray,
     status: np.ndarray,
     refused: np.ndarray,
-    blank: np.ndarray,
     side: float,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Coordinates at the corners of all facets, in the net and in the strip beyond it.
@@ -279,10 +277,10 @@ def continue_beyond(
                 p, q = known[0], known[1]
                 stop = 0
             else:
-                stop = why_not(valid, status, refused, blank, p, q)
+                stop = why_not(valid, status, refused, p, q)
             at[g, o, 0], at[g, o, 1] = p, q
             if stop == 0 and not can_be(stretch(points, triangles[g], at[g], side), tangent[g]):
-                stop = TOO_SHEARED
+                stop = IS_TOO_SHEARED
             if stop != 0:
                 at[g] = np.nan
                 tangent[g] = np.nan

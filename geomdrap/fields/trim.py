@@ -63,7 +63,7 @@ def trim(net: Net) -> Trimmed:
     )
     at, kind, tangent, stopped = continue_beyond(
         mesh.points, mesh.triangles, mesh.neighbours, mesh.neighbour_edge, part.normals[mesh.parent],
-        vertex_at, net.yarns, net.lattice_valid, net.status_around, REFUSED, _blank_in_cells(net), net.pitch,
+        vertex_at, net.yarns, net.lattice_valid, net.status_around, REFUSED, net.pitch,
     )  # fmt: skip
     at = np.array([net.u[0], net.v[0]]) + at * net.pitch
     share = (kind > 0).astype(float)
@@ -75,14 +75,6 @@ def trim(net: Net) -> Trimmed:
     reason = _spread_reasons(reason, mesh.neighbours, net)
     assert len(reason) == m
     return Trimmed(mesh, at, kind, tangent / net.pitch, area, share, reason)
-
-
-def _blank_in_cells(net: Net) -> np.ndarray:
-    """Least and greatest coordinates of the blank along u, then v, in cells from the first node."""
-    if net.reach is None:
-        return np.array([-np.inf, np.inf, -np.inf, np.inf])
-    u, v = net.reach
-    return np.array([-u - net.u[0], u - net.u[0], -v - net.v[0], v - net.v[0]]) / net.pitch
 
 
 def _all_bare(mesh: Refined, area: np.ndarray, why: Status) -> Trimmed:

@@ -14,8 +14,7 @@ from geomdrap.geodesic.compiled import inlined, kernel
 if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
-# columns of Mesh.row
-CORNER = 0  # x, y of corners 0, 1, 2 in the face's own frame
+# columns of Mesh.row; the first six are x, y of corners 0, 1, 2 in the face's own frame
 CROSS = 6  # per edge cosine, sine, shift x, shift y into the neighbour's frame
 BEND = 18  # per edge the two numbers of ``bends``
 

@@ -88,8 +88,7 @@ def test_the_numbering_of_the_mesh_does_not_matter(part):
 
 def test_on_the_other_side_of_the_part_the_net_is_its_mirror_image(part, request):
     surface, seed, pitch, reference, net = part
-    if "double dome" in request.node.name:
-        pytest.xfail("where its fronts meet, the first to arrive differs in the mirror: a known weakness")
+    known_to_differ(surface, request)
     there = gd.drape(surface.flipped(), seed, -25.0, pitch, reference=reference)
     # the warp is the same, the weft runs the other way
     np.testing.assert_allclose(there.warp0, net.warp0, atol=1e-9)
