@@ -13,3 +13,7 @@ class SurfaceError(GeomdrapError):
 
 class DrapeError(GeomdrapError):
     """The drape cannot start or cannot be carried out as asked (seed, heading, pitch, blank)."""
+
+
+class MeasurementError(GeomdrapError):
+    """A measured table or its set-up cannot be read, or does not fit the part."""
