@@ -13,3 +13,7 @@ class SurfaceError(GeomdrapError):
 
 class DrapeError(GeomdrapError):
     """The drape cannot start or cannot be carried out as asked (seed, heading, pitch, blank)."""
+
+
+class EffectError(GeomdrapError):
+    """An effect is unknown, its parameters are not what it takes, or it cannot act on this part."""
