@@ -13,6 +13,7 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "DrapeError": "errors",
+    "EffectError": "errors",
     "GeomdrapError": "errors",
     "MeasurementError": "errors",
     "SurfaceError": "errors",
@@ -21,6 +22,7 @@ _HOMES = {
     "shapes": "surface",
     "trace": "geodesic",
     "Effect": "fishnet",
+    "Parameter": "fishnet",
     "Fabric": "fishnet",
     "Net": "fishnet",
     "Measurement": "measurement",
@@ -30,18 +32,23 @@ _HOMES = {
     "evaluate": "fields",
 }
 
+_PACKAGES = ("effects",)
+
 __all__ = [
     "DrapeError",
     "Effect",
+    "EffectError",
     "Fabric",
     "GeomdrapError",
     "Measurement",
     "MeasurementError",
     "Net",
+    "Parameter",
     "Surface",
     "SurfaceError",
     "__version__",
     "drape",
+    "effects",
     "evaluate",
     "read_measurement",
     "read_setup",
@@ -53,6 +60,8 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Load a public name when it is first used, so that ``import geomdrap`` stays instant."""
+    if name in _PACKAGES:
+        return import_module(f"geomdrap.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module 'geomdrap' has no attribute {name!r}")
     return getattr(import_module(f"geomdrap.{_HOMES[name]}"), name)

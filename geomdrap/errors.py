@@ -17,3 +17,7 @@ class DrapeError(GeomdrapError):
 
 class MeasurementError(GeomdrapError):
     """A measured table or its set-up cannot be read, or does not fit the part."""
+
+
+class EffectError(GeomdrapError):
+    """An effect is unknown, its parameters are not what it takes, or it cannot act on this part."""
