@@ -82,3 +82,12 @@ class Net:
         from geomdrap.fishnet.interpolate import at_fabric_coordinates
 
         return at_fabric_coordinates(self, np.atleast_1d(u), np.atleast_1d(v))
+
+    def directions(self, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Unit directions of warp and weft (n, 3) in space at fabric coordinates u, v (n,) mm.
+
+        Toward +u and +v, bilinear in the cell; NaN outside the valid cells.
+        """
+        from geomdrap.fishnet.interpolate import directions_at
+
+        return directions_at(self, np.atleast_1d(u), np.atleast_1d(v))
