@@ -21,7 +21,7 @@ from geomdrap.fishnet.pitch import check_pitch, choose_pitch, coarse_facets
 from geomdrap.fishnet.place import APART, all_in_space, place_seed
 from geomdrap.fishnet.shear import shears, yarn_directions
 from geomdrap.fishnet.shift import Shift, displaced
-from geomdrap.fishnet.slide import ROUNDS, SETTLED, weft_strains
+from geomdrap.fishnet.slide import fill_quadrants_sliding, strain_on_axis
 from geomdrap.geodesic.mesh import Mesh, mesh_of
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 
 FAR = 1e5  # part's diagonals from the origin: beyond, rounding reaches what ``TIE`` tells apart
+AXIS_ROUNDS, AXIS_STRAIN = 6, 1e-6  # marches until a sliding weft generator has its length: one, without skew
 SPREAD = 2.0  # cells: the facets' curvature is spread no further, which is below what the net resolves
 
 
@@ -104,38 +105,33 @@ def _plant(
 
 
 def _march_sliding(mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric) -> Grid:
-    """March until the weft pieces are as long as the shear of the net makes them: at once where yarns do not slip.
-
-    Raises DrapeError where they never are.
-    """
-    grid = _march(mesh, start, extent, pitch, fabric)
-    if fabric.slip == 0.0:
-        return grid
-    for _ in range(ROUNDS):
-        strains = weft_strains(grid, extent.west, fabric.slip)
-        if np.abs(strains - grid.node[..., STRAIN]).max() < SETTLED:
-            return grid
-        grid = _march(mesh, start, extent, pitch, fabric, strains)
-    raise DrapeError(
-        f"no net was found in which the yarns slip by {fabric.slip:g}: the part shears them too far; use a smaller "
-        "coefficient, a smaller pitch or a smaller blank"
-    )
+    """March; where yarns slip, again with the lengths that the cells beside it give to the weft generator."""
+    grid = _march(mesh, start, extent, pitch, fabric, 0.0)
+    if fabric.slip != 0.0:
+        for _ in range(AXIS_ROUNDS):
+            strain = strain_on_axis(grid, extent.west, fabric.slip)
+            if np.abs(strain - grid.node[extent.west, :, STRAIN]).max() < AXIS_STRAIN:
+                break
+            grid = _march(mesh, start, extent, pitch, fabric, strain)
+    return grid
 
 
 def _march(
-    mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric, strains: np.ndarray | None = None
+    mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric, axis: np.ndarray | float
 ) -> Grid:
-    """Seed, generators (α-nodes), cells (β-nodes), and the front carried on; ``strains`` (nu, nv) of weft pieces."""
+    """Seed, generators (α-nodes), cells (β-nodes), and the front carried on; ``axis``: strains of the weft generator."""
     grid = empty_grid(*sides(extent, pitch, fabric), APART)
-    if strains is not None:
-        grid.node[..., STRAIN] = strains
     i0, j0 = extent.west, extent.south
+    grid.node[i0, :, STRAIN] = axis
     weft_rad = math.radians(fabric.weft_angle)
     curvature = np.array([fabric.curvature_warp, fabric.curvature_weft])
     place_seed(mesh, grid, i0, j0, start.face, *_seed_in_frame(mesh, start), weft_rad)
     lay_generators(mesh, grid, i0, j0, start.starts, start.places, curvature)
     branch_off(mesh, grid, i0, j0, weft_rad)
-    fill_quadrants(mesh, grid, i0, j0)
+    if fabric.slip == 0.0:
+        fill_quadrants(mesh, grid, i0, j0)
+    else:
+        fill_quadrants_sliding(mesh, grid, i0, j0, fabric.slip)
     carry_front_on(mesh, grid, i0, j0)
     return grid
 
