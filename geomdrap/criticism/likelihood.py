@@ -12,10 +12,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from geomdrap.criticism.scatter import Smoothness, scatter_covariance
+from geomdrap.criticism.scatter import Smoothness, scatter_covariance, shifts
 
-RATIO = 1.35  # between neighbouring correlation lengths that are tried
-SIZES = (0.0, 0.3, 0.5, 0.75, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 11.3, 16.0)  # τ over the positions' noise
+RATIO = 1.4  # between neighbouring correlation lengths that are tried
+SIZES = (0.0, 0.3, 0.5, 0.8, 1.3, 2.0, 3.2, 5.0, 8.0, 13.0, 20.0)  # τ over the positions' noise
 WIDEST = 0.3  # of the measured patch's longer side: what varies more slowly is no scatter
 
 
@@ -50,21 +50,24 @@ class Judge:
         self, at: np.ndarray, channels: tuple[str, ...], mask: np.ndarray, noise: np.ndarray, unit: float
     ) -> None:
         self.at, self.channels, self.mask, self.noise, self.unit = at, channels, mask, noise, unit
-        self.lengths = correlation_lengths(at)
+        self.lengths = correlation_lengths(at[mask.any(axis=1)])
+        # what no shift along the part can change keeps its own noise and stays out of the dense algebra
+        self.shifted = np.concatenate([np.full(mask[:, c].sum(), shifts(name)) for c, name in enumerate(channels)])
         self._covariance = lru_cache(2)(self._make_covariance)
         self._factor = lru_cache(64)(self._make_factor)
 
     def _make_covariance(self, length: float, kind: Smoothness) -> np.ndarray:
-        return scatter_covariance(self.at, self.channels, self.mask, length, kind)
+        seen = [c for c, name in enumerate(self.channels) if shifts(name)]
+        return scatter_covariance(self.at, tuple(self.channels[c] for c in seen), self.mask[:, seen], length, kind)
 
     def _make_factor(self, scatter: Scatter) -> tuple[np.ndarray, float]:
-        """Lower Cholesky factor of the covariance (m, m), and half the logarithm of its determinant."""
+        """Lower Cholesky factor of the covariance of the shifted values, and half the log of all its determinant."""
         from scipy.linalg import cholesky
 
         total = scatter.size**2 * self._covariance(scatter.length, scatter.kind)
-        total[np.diag_indices(len(total))] += self.noise**2
+        total[np.diag_indices(len(total))] += self.noise[self.shifted] ** 2
         factor = cholesky(total, lower=True, overwrite_a=True, check_finite=False)
-        return factor, float(np.log(np.diag(factor)).sum())
+        return factor, float(np.log(np.diag(factor)).sum() + np.log(self.noise[~self.shifted]).sum())
 
     def whiten(self, scatter: Scatter) -> Callable[[np.ndarray], np.ndarray]:
         """The map that turns residuals (m,) or slopes (m, p) into independent ones of variance 1."""
@@ -73,7 +76,13 @@ class Judge:
         from scipy.linalg import solve_triangular
 
         factor = self._factor(scatter)[0]
-        return lambda a: solve_triangular(factor, a, lower=True, check_finite=False)
+
+        def whitened(a: np.ndarray) -> np.ndarray:
+            out = a / (self.noise if a.ndim == 1 else self.noise[:, None])
+            out[self.shifted] = solve_triangular(factor, a[self.shifted], lower=True, check_finite=False)
+            return out
+
+        return whitened
 
     def log_likelihood(self, scatter: Scatter, models: Sequence[Residuals]) -> np.ndarray:
         """Log-likelihoods of models, each with its parameters at their best (to first order), less a constant."""
@@ -86,6 +95,11 @@ class Judge:
             out[n] = -0.5 * square_beside(columns[:, k], columns[:, k + 1 : k + 1 + p]) - half_log
             k += 1 + p
         return out
+
+    def square(self, scatter: Scatter, model: Residuals) -> float:
+        """Chi-square of a model under noise and scatter, its parameters at their best (to first order)."""
+        whiten = self.whiten(scatter)
+        return square_beside(whiten(model.residual), whiten(model.slopes))
 
     def best_scatter(self, models: Sequence[Residuals], of: Sequence[int]) -> tuple[list[Scatter], np.ndarray]:
         """The likeliest scatter of each model and its log-likelihood (k,).

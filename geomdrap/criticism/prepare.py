@@ -9,16 +9,19 @@ import numpy as np
 
 from geomdrap.criticism.experiment import CHANNELS, COARSE, FINE, Experiment, Layup, flatten, predicted
 from geomdrap.errors import MeasurementError
+from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
+from geomdrap.measurement.match import Matched, match
+from geomdrap.measurement.noise import noise_of, repeats_of
+from geomdrap.measurement.outliers import Outlier, find_outliers
+from geomdrap.measurement.plausible import check_labels, require_on_part
 
 if TYPE_CHECKING:
-    from geomdrap.fishnet import Net
     from geomdrap.measurement import Measurement
     from geomdrap.surface import Surface
 
-MOST_POINTS = 600  # with a dense covariance; more points are thinned out evenly
-NEIGHBOURS = 8
-OUTLIER = 5.0  # robust standard deviations from what the neighbours say
-UNDERSTATED = 1.25  # noise this much larger than said is believed instead
+MOST_POINTS = 400  # with a dense covariance; more points are thinned out evenly
+POSITION = ("along", "across", "normal")
+NOT_POSITION = {"shear": "shear", "warp": "direction", "weft": "direction"}
 
 
 def prepare(
@@ -27,138 +30,114 @@ def prepare(
     layup: Layup,
     sigma_xyz: float | None = None,
     sigma_shear: float | None = None,
-) -> tuple[Experiment, tuple[str, ...]]:
-    """The experiment and notes on what was chosen.
+) -> tuple[Experiment, tuple[Outlier, ...], tuple[str, ...]]:
+    """The experiment, its outliers, and notes on what was chosen.
 
     ``sigma_xyz`` mm and ``sigma_shear`` degrees apply where the table has no noise of its own; with neither, noise is
     read from how neighbouring residuals differ. Raises MeasurementError where nothing can be compared.
     """
+    require_on_part(surface, measurement)
     notes: list[str] = []
     measurement = thinned(measurement, notes)
+    lay = replace(layup, pitch=None)
     pitches = _pitches(surface, measurement, layup)
-    lay = replace(layup, pitch=pitches[0])
+    empty = np.zeros(0)
     bare = Experiment(
-        surface, measurement, lay, np.zeros((0, 2)), np.zeros((0, 3, 3)), (), np.zeros((0, 0), bool), np.zeros(0),
-        np.zeros(0), pitches,
-    )  # fmt: skip
+        surface, measurement, lay, np.zeros((0, 2)), np.zeros((0, 3, 3)), (), np.zeros((0, 0), bool), empty, empty, pitches
+    )
     net = bare.draped()
-    at, frames = places(net, measurement)
-    channels, values, sigma = measured_table(measurement, frames, sigma_xyz, sigma_shear)
+    found = match(net, measurement)
+    if not found.used.any():
+        raise MeasurementError(
+            f"{measurement.source}: the model predicts none of the {len(measurement)} points "
+            f"({found.reason[0]}); check the origin, the heading and the units of the table"
+        )
+    notes += check_labels(net, measurement)
+    at = np.column_stack([found.u, found.v])
+    frames = np.stack([found.warp, np.cross(found.normal, found.warp), found.normal], axis=1)
+    channels, values = measured_table(measurement, found, frames)
     table = predicted(net, measurement, frames, channels)
     mask = np.isfinite(values) & np.isfinite(table) & np.isfinite(at).all(axis=1)[:, None]
+    sigma, more = _noise(measurement, channels, values, values - table, at, sigma_xyz, sigma_shear)
+    outside = find_outliers(net, measurement, found, *_by_kind(channels, sigma))
+    for outlier in outside:
+        kind = [name in POSITION for name in channels]
+        mask[outlier.row] &= ~np.array(kind) if outlier.kind == "position" else np.array(kind)
     if not mask.any():
-        raise MeasurementError(
-            f"{measurement.source}: the model predicts none of the {len(measurement)} points; check the origin, the "
-            "heading and the unit of the table"
-        )
-    residual = values - table
-    for c, name in enumerate(channels):
-        heard = local_noise(at, residual[:, c], mask[:, c])
-        said = np.nanmedian(sigma[mask[:, c], c]) if mask[:, c].any() else np.nan
-        if np.isfinite(said) and heard > UNDERSTATED * said:
-            notes.append(f"neighbouring residuals of {name} differ by {heard:.3g}, more than the noise given, {said:.3g}")
-            sigma[:, c] *= heard / said
-        sigma[:, c] = np.where(np.isfinite(sigma[:, c]), sigma[:, c], max(heard, 1e-9))
-    mask &= ~outliers(at, residual, mask, sigma)[:, None]
+        raise MeasurementError(f"{measurement.source}: every point stands out from its neighbours; check the table")
     experiment = Experiment(
         surface, measurement, lay, at, frames, channels, mask, flatten(sigma, mask), flatten(values, mask), pitches
     )
-    return experiment, tuple(notes)
+    return experiment, outside, (*notes, *more)
 
 
 def thinned(measurement: Measurement, notes: list[str]) -> Measurement:
-    """At most ``MOST_POINTS`` points, spread evenly over the table's order along the part's longest direction."""
+    """At most ``MOST_POINTS`` points, the same whatever the order of the rows."""
     n = len(measurement)
     if n <= MOST_POINTS:
         return measurement
-    notes.append(f"{MOST_POINTS} of {n} points were used, spread evenly")
-    rng = np.random.default_rng(0)
-    order = np.lexsort(np.round(measurement.points, 6).T)  # the same points whatever the order of the rows
-    return measurement.take(np.sort(order[rng.permutation(n)[:MOST_POINTS]]))
+    notes.append(f"{MOST_POINTS} of {n} points were used, drawn evenly from all")
+    order = np.lexsort(np.round(measurement.points, 6).T)
+    return measurement.take(np.sort(order[np.random.default_rng(0).permutation(n)[:MOST_POINTS]]))
 
 
 def _pitches(surface: Surface, measurement: Measurement, layup: Layup) -> tuple[float, float]:
     """Pitches of the fine and of the coarse net: by the numbers of nodes, dividing the spacing of the marks."""
-    from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
-
     spacing = mark_spacing(measurement.u)
     fine = layup.pitch or pitch_for_marks(spacing, float(np.sqrt(surface.area / FINE)))
     coarse = max(pitch_for_marks(spacing, float(np.sqrt(surface.area / COARSE))), fine)
     return fine, coarse
 
 
-def places(net: Net, measurement: Measurement) -> tuple[np.ndarray, np.ndarray]:
-    """Fabric coordinates (n, 2) mm and frames (n, 3, 3) along the warp, across it, along the normal."""
-    from geomdrap.measurement.match import match
-
-    found = match(net, measurement)
-    across = np.cross(found.normal, found.warp)
-    return np.column_stack([found.u, found.v]), np.stack([found.warp, across, found.normal], axis=1)
-
-
 def measured_table(
-    measurement: Measurement, frames: np.ndarray, sigma_xyz: float | None, sigma_shear: float | None
-) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
-    """Channels (c,), measured values (n, c) and their noise (n, c), NaN where it is not known."""
-    n = len(measurement)
-    names, values, noise = [], [], []
-    spread = _noise(measurement.sigma_xyz, sigma_xyz, n)
-    turned = _noise(measurement.sigma_shear, sigma_shear, n)
-    for name in CHANNELS[:3] if measurement.labelled else ("normal",):
-        names.append(name)
-        values.append(np.einsum("nk,nk->n", measurement.points, frames[:, CHANNELS.index(name)]))
-        noise.append(spread)
+    measurement: Measurement, found: Matched, frames: np.ndarray
+) -> tuple[tuple[str, ...], np.ndarray]:
+    """Channels (c,) and measured values (n, c), NaN where there is none."""
+    table: dict[str, np.ndarray] = {}
+    for name in POSITION if measurement.labelled else ("normal",):
+        table[name] = np.einsum("nk,nk->n", measurement.points, frames[:, CHANNELS.index(name)])
     if measurement.shear is not None:
-        names.append("shear")
-        values.append(measurement.shear)
-        noise.append(turned)
+        table["shear"] = measurement.shear
     for name in ("warp", "weft"):
         direction = getattr(measurement, name)
         if direction is not None:
-            names.append(name)
-            values.append(np.where(np.isfinite(direction).all(axis=1), 0.0, np.nan))
-            noise.append(turned)
-    return tuple(names), np.column_stack(values), np.column_stack(noise)
+            table[name] = np.where(np.isfinite(direction).all(axis=1), 0.0, np.nan)
+    return tuple(table), np.column_stack(list(table.values()))
 
 
-def _noise(own: np.ndarray | None, said: float | None, n: int) -> np.ndarray:
-    default = np.nan if said is None else said
-    if own is None:
-        return np.full(n, default)
-    return np.where(np.isfinite(own), own, default)
-
-
-def beside(at: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """For each of ``rows`` the nearest others among them (k, NEIGHBOURS), as numbers of points."""
-    from scipy.spatial import cKDTree
-
-    count = min(NEIGHBOURS + 1, len(rows))
-    return rows[cKDTree(at[rows]).query(at[rows], k=count)[1].reshape(len(rows), count)[:, 1:]]
-
-
-def local_noise(at: np.ndarray, residual: np.ndarray, known: np.ndarray) -> float:
-    """Standard deviation of values (n,) about the plane through their neighbours, robust against outliers."""
-    rows = np.flatnonzero(known)
-    if len(rows) < NEIGHBOURS + 1:
-        return float(np.nanstd(residual[rows])) if len(rows) > 1 else np.nan
-    near = beside(at, rows)
-    misses = []
-    for k, others in zip(rows, near, strict=True):
-        a = np.column_stack([np.ones(len(others)), at[others] - at[k]])
-        weights = np.linalg.lstsq(a.T, np.array([1.0, 0.0, 0.0]), rcond=1e-9)[0]  # of the plane at the point itself
-        misses.append((residual[k] - weights @ residual[others]) / np.sqrt(1.0 + weights @ weights))
-    return float(1.4826 * np.median(np.abs(misses)))
-
-
-def outliers(at: np.ndarray, residual: np.ndarray, mask: np.ndarray, sigma: np.ndarray) -> np.ndarray:
-    """Which points (n,) are far from what their neighbours say, in any channel."""
-    out = np.zeros(len(at), bool)
-    for c in range(mask.shape[1]):
-        rows = np.flatnonzero(mask[:, c])
-        if len(rows) < NEIGHBOURS + 1:
+def _noise(
+    measurement: Measurement,
+    channels: tuple[str, ...],
+    values: np.ndarray,
+    residual: np.ndarray,
+    at: np.ndarray,
+    sigma_xyz: float | None,
+    sigma_shear: float | None,
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Noise (n, c) of every value, and warnings. Raises MeasurementError where there is no way to know it."""
+    sigma = np.full(values.shape, np.nan)
+    repeats = repeats_of(measurement)
+    warnings: tuple[str, ...] = ()
+    for kind, column, given in (
+        ("position", measurement.sigma_xyz, sigma_xyz),
+        ("shear", measurement.sigma_shear, sigma_shear),
+        ("direction", measurement.sigma_shear, sigma_shear),
+    ):
+        own = [c for c, name in enumerate(channels) if NOT_POSITION.get(name, "position") == kind]
+        if not own:
             continue
-        near = beside(at, rows)
-        away = np.abs(residual[rows, c] - np.median(residual[near, c], axis=1))
-        spread = np.maximum(1.4826 * np.median(away), 1.2 * sigma[rows, c])
-        out[rows[away > OUTLIER * spread]] = True
-    return out
+        noise, more = noise_of(kind, column, given, values[:, own], repeats, residual[:, own], at)
+        if noise.sigma is None:
+            raise MeasurementError(
+                f"{measurement.source}: there are too few points to read the noise of the {kind} from them; give it "
+                f"({'--sigma-xyz' if kind == 'position' else '--sigma-shear'})"
+            )
+        sigma[:, own] = noise.sigma[:, None]
+        warnings += more
+    return sigma, warnings
+
+
+def _by_kind(channels: tuple[str, ...], sigma: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """Noise (n,) of positions and of shear, None where there are none."""
+    position = sigma[:, channels.index("normal")] if "normal" in channels else None
+    return position, sigma[:, channels.index("shear")] if "shear" in channels else None

@@ -31,6 +31,11 @@ SEES = {
 }
 
 
+def shifts(channel: str) -> bool:
+    """Whether a shift of the ply along the part changes what the channel sees."""
+    return any(any(weights) for weights in SEES[channel])
+
+
 class Smoothness(Enum):
     """How smooth the shift is."""
 
