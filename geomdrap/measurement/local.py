@@ -11,17 +11,36 @@ TUNING = 4.685
 MAD_TO_SIGMA = 1.4826
 
 
+def quantile_of_size(share: float, width: int) -> float:
+    """Quantile of the length of ``width`` independent normal numbers."""
+    from scipy.stats import chi2
+
+    return float(np.sqrt(chi2.ppf(share, width)))
+
+
 def robust_sigma(values: np.ndarray) -> float:
-    """Standard deviation of values (any shape) about zero from the median of their sizes; NaN are left out."""
-    sizes = np.abs(values[np.isfinite(values)])
-    return float(MAD_TO_SIGMA * np.median(sizes)) if len(sizes) else float("nan")
+    """Standard deviation of the components of values (n, k) about zero, from the median of their lengths.
+
+    Rows with NaN are left out; NaN where none is left.
+    """
+    sizes = np.linalg.norm(values[np.isfinite(values).all(axis=1)], axis=1)
+    return float(np.median(sizes)) / quantile_of_size(0.5, values.shape[1]) if len(sizes) else float("nan")
 
 
 def neighbours(places: np.ndarray, count: int = NEIGHBOURS) -> np.ndarray:
-    """Numbers (n, count) of the nearest other places (n, d); fewer columns where there are fewer places."""
+    """Numbers (n, count) of the nearest other places (n, d); fewer columns where there are fewer places.
+
+    Which of equally near ones are taken depends on the places alone, not on the order of the rows.
+    """
+    order = np.lexsort(places.T)
+    out = np.empty((len(places), min(count, len(places) - 1)), np.int64)
+    out[order] = order[_nearest_others(places[order], out.shape[1])]
+    return out
+
+
+def _nearest_others(places: np.ndarray, count: int) -> np.ndarray:
     from scipy.spatial import cKDTree
 
-    count = min(count, len(places) - 1)
     _, near = cKDTree(places).query(places, k=count + 1)
     near = near.reshape(len(places), count + 1)
     # a place is its own nearest, but among coincident places not always the first

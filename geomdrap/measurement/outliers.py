@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.measurement.local import deviations, neighbours, robust_sigma
+from geomdrap.measurement.local import deviations, neighbours, quantile_of_size, robust_sigma
 from geomdrap.measurement.marks import mark_spacing
 
 if TYPE_CHECKING:
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 LIMIT = 5.0
 """Robust standard deviations beyond which a value is an outlier: 1 in 2 million of normal noise."""
+
+NEARBY = 0.75
+"""Quantile of the neighbours' deviations that says what is usual nearby."""
 
 OFF_BY = 2
 """Marks by which a label may be wrong along each axis and still be recognised."""
@@ -83,18 +86,11 @@ def _stand_out(places: np.ndarray, values: np.ndarray, sigma: np.ndarray | None)
     scaled = off / factor[:, None]
     size = np.linalg.norm(scaled, axis=1)
     usual = robust_sigma(scaled)
-    nearby = np.median(size[neighbours(places)], axis=1) / _median_size(values.shape[1])
+    nearby = np.quantile(size[neighbours(places)], NEARBY, axis=1) / quantile_of_size(NEARBY, values.shape[1])
     least = 0.0 if sigma is None else np.nan_to_num(sigma)
     tiny = 1e-9 * (1.0 + np.abs(values).max())
     scale = np.maximum(np.maximum(np.maximum(usual, nearby), least), tiny)
     return off, size / scale / np.sqrt(_excess(values.shape[1]))
-
-
-def _median_size(width: int) -> float:
-    """Median size of ``width`` normal numbers."""
-    from scipy.stats import chi2
-
-    return float(np.sqrt(chi2.median(width)))
 
 
 def _excess(width: int) -> float:
