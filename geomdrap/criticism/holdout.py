@@ -37,7 +37,7 @@ def held_out_error(residual: np.ndarray, slopes: np.ndarray, noise: np.ndarray, 
     total = 0.0
     for k in np.unique(block):
         out = block == k
-        step = np.linalg.lstsq(a[~out], r[~out], rcond=1e-9)[0]
+        step = np.linalg.lstsq(a[~out], r[~out], rcond=1e-9)[0] if a.size else np.zeros(0)
         left = r[out] - a[out] @ step
         total += float(left @ left)
     return float(np.sqrt(total / len(r)))

@@ -53,7 +53,7 @@ def leftover(experiment: Experiment, rows: np.ndarray, judge: Judge, model: Resi
     both = np.hstack([slopes, smooth])
     norm = np.linalg.norm(both, axis=0) + 1e-300
     step = np.linalg.lstsq(both / norm, residual, rcond=1e-8)[0] / norm
-    caught = np.abs(fields @ step[slopes.shape[1] :]) / judge.noise
+    caught = np.abs(np.hstack([model.slopes, fields]) @ step) / judge.noise
     sizes = {str(c): float(np.sqrt(np.mean(caught[channel == c] ** 2))) for c in np.unique(channel)}
     order = sorted(sizes, key=lambda c: -sizes[c])
     return Leftover(p_value, max(sizes.values()), tuple(c for c in order if sizes[c] > NOISE))

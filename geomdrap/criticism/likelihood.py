@@ -101,6 +101,12 @@ class Judge:
         whiten = self.whiten(scatter)
         return square_beside(whiten(model.residual), whiten(model.slopes))
 
+    def floor(self, scatter: Scatter) -> float:
+        """Root mean square over the noise of what noise and scatter leave to a perfect model."""
+        covariance = self._covariance(scatter.length, scatter.kind)
+        more = scatter.size**2 * np.diag(covariance) / self.noise[self.shifted] ** 2
+        return float(np.sqrt(1.0 + more.sum() / len(self.noise)))
+
     def best_scatter(self, models: Sequence[Residuals], of: Sequence[int]) -> tuple[list[Scatter], np.ndarray]:
         """The likeliest scatter of each model and its log-likelihood (k,).
 

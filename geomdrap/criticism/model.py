@@ -104,6 +104,14 @@ def predictor(experiment: Experiment, model: Model) -> Callable[[np.ndarray], np
     return predict
 
 
+def unfitted(experiment: Experiment) -> Fitted:
+    """The net as it was meant: nothing fitted."""
+    model = Model(())
+    residual = experiment.measured - predictor(experiment, model)(model.neutral)
+    nothing = np.zeros((len(residual), 0))
+    return Fitted(model, Fit(model.neutral, residual, nothing, float(np.nansum((residual / experiment.noise) ** 2))))
+
+
 def fit_placement(experiment: Experiment, whiten: Whiten, start: np.ndarray | None = None) -> Fitted:
     """The model without effects."""
     model = Model(())
