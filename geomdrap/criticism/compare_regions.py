@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 NEAR = 8
 """Neighbours over which a residual is averaged, so that noise does not make a region."""
-CLEAR = 4.0
+CLEAR = 5.0
 """Standard deviations of that average from which a region is worth a name."""
 PART_OF = 0.5
 """Of its peak: how far the averaged residual may fall within a region."""
