@@ -26,6 +26,7 @@ _HOMES = {
     "Measurement": "measurement",
     "read_measurement": "measurement",
     "read_setup": "measurement",
+    "compare": "criticism",
     "drape": "fishnet",
     "evaluate": "fields",
 }
@@ -41,6 +42,7 @@ __all__ = [
     "Surface",
     "SurfaceError",
     "__version__",
+    "compare",
     "drape",
     "evaluate",
     "read_measurement",

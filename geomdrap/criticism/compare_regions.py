@@ -136,6 +136,14 @@ def _region(comparison: Comparison, rows: np.ndarray, peak: int, score: float) -
     )
 
 
+def region_words(region: Region) -> str:
+    """A region in one line: place, residual, shear."""
+    at = ", ".join(f"{x:.0f}" for x in region.position)
+    along = f"{region.along_warp:+.2f} warp, {region.along_weft:+.2f} weft, {region.normal:+.2f} normal"
+    shear = "" if region.shear is None else f"; shear {region.shear:+.1f}°"
+    return f"{region.name}: {region.size:.2f} mm ({along}){shear}; {region.n} points about ({at})"
+
+
 def name_of_place(comparison: Comparison, row: int) -> str:
     """A place in words: how far along warp and weft, how close to the rim, in which kind of curvature."""
     matched, places, surface = comparison.matched, comparison.places, comparison.net.surface

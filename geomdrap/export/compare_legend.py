@@ -29,7 +29,7 @@ def key_figures(comparison: Comparison) -> list[tuple[str, str, str]]:
     if scores.chi2_per_dof is not None:
         ratio = np.sqrt(scores.chi2_per_dof)
         colour = palette.INK if scores.chi2_per_dof < QUIET else palette.HIGH
-        out.append((f"{ratio:.1f} ×", f"the noise, over all\n(χ² per value {scores.chi2_per_dof:.3g})", colour))
+        out.append((f"{ratio:.3g} ×", f"the noise, over all\n(χ² per value {scores.chi2_per_dof:.3g})", colour))
     used, n = int(comparison.used.sum()), len(comparison.measurement)
     words = f"points compared\n{n - used} without prediction"
     colour = palette.INK if used >= ENOUGH * n else palette.ALARM

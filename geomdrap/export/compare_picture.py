@@ -133,7 +133,7 @@ def _trends(figure: Any, comparison: Comparison, kind: str, bottom: float) -> No
 
 def _lines(comparison: Comparison) -> list[tuple[str, bool]]:
     """Worst regions, then warnings (True): the words at the foot of the page."""
-    from geomdrap.criticism.compare_regions import unmeasured, worst_regions
+    from geomdrap.criticism.compare_regions import region_words, unmeasured, worst_regions
 
     lines = [("Worst:  " + text, False) for text in (region_words(r) for r in worst_regions(comparison))]
     if not lines:
@@ -144,14 +144,6 @@ def _lines(comparison: Comparison) -> list[tuple[str, bool]]:
     for warning in comparison.warnings[:4]:
         lines += [(text, True) for text in textwrap.wrap("Warning: " + warning, 190, subsequent_indent="    ")]
     return lines
-
-
-def region_words(region: Any) -> str:
-    """A region in one line: place, residual, shear."""
-    at = ", ".join(f"{x:.0f}" for x in region.position)
-    along = f"{region.along_warp:+.2f} warp, {region.along_weft:+.2f} weft, {region.normal:+.2f} normal"
-    shear = "" if region.shear is None else f"; shear {region.shear:+.1f}°"
-    return f"{region.name}: {region.size:.2f} mm ({along}){shear}; {region.n} points about ({at})"
 
 
 def _write_lines(figure: Any, lines: list[tuple[str, bool]], top: float) -> None:
