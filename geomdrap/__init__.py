@@ -28,6 +28,7 @@ _HOMES = {
     "Measurement": "measurement",
     "read_measurement": "measurement",
     "read_setup": "measurement",
+    "compare": "criticism",
     "drape": "fishnet",
     "evaluate": "fields",
 }
@@ -47,6 +48,7 @@ __all__ = [
     "Surface",
     "SurfaceError",
     "__version__",
+    "compare",
     "drape",
     "effects",
     "evaluate",

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 NEAR = 8
 """Neighbours over which a residual is averaged, so that noise does not make a region."""
-CLEAR = 4.0
+CLEAR = 5.0
 """Standard deviations of that average from which a region is worth a name."""
 PART_OF = 0.5
 """Of its peak: how far the averaged residual may fall within a region."""
@@ -134,6 +134,14 @@ def _region(comparison: Comparison, rows: np.ndarray, peak: int, score: float) -
         shear=None if shear is None or np.isnan(shear).all() else float(np.nanmean(shear)),
         score=score,
     )
+
+
+def region_words(region: Region) -> str:
+    """A region in one line: place, residual, shear."""
+    at = ", ".join(f"{x:.0f}" for x in region.position)
+    along = f"{region.along_warp:+.2f} warp, {region.along_weft:+.2f} weft, {region.normal:+.2f} normal"
+    shear = "" if region.shear is None else f"; shear {region.shear:+.1f}°"
+    return f"{region.name}: {region.size:.2f} mm ({along}){shear}; {region.n} points about ({at})"
 
 
 def name_of_place(comparison: Comparison, row: int) -> str:

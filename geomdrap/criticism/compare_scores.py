@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.measurement.local import quantile_of_size
-
 if TYPE_CHECKING:
     from geomdrap.criticism.comparison import Comparison
     from geomdrap.measurement.noise import Noise
@@ -18,8 +16,8 @@ if TYPE_CHECKING:
 class Score:
     """One kind of residual, in its unit (mm or degrees).
 
-    ``rms``: root mean square of all values, of the length of the vector for positions. ``robust_rms``: the same from
-    the median, which outliers do not move. ``noise``: the root mean square that noise alone would give; ``sigma``:
+    ``rms``: root mean square of all values, of the length of the vector for positions. ``robust_rms``: the same
+    without the outliers. ``noise``: the root mean square that noise alone would give; ``sigma``:
     the standard deviation behind it, per coordinate; None where the noise is not known. ``source``: of the noise.
     ``bias``: mean of the residual (components along warp, weft, normal, or one number). ``chi2``: sum of the squares
     in units of sigma over the ``dof`` trusted values. ``n``: values.
@@ -78,7 +76,7 @@ def _score(comparison: Comparison, values: np.ndarray, noise: Noise, parts: np.n
     return Score(
         n=int(known.sum()),
         rms=float(np.sqrt(np.mean(size**2))),
-        robust_rms=float(np.median(size) * np.sqrt(width) / quantile_of_size(0.5, width)),
+        robust_rms=float(np.sqrt(np.mean(np.sum(values[kept] ** 2, axis=1)))),
         noise=None if sigma is None else float(sigma * np.sqrt(width)),
         sigma=sigma,
         source=noise.source,

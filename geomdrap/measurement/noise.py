@@ -18,6 +18,9 @@ LEAST_REPEATS = 5
 DISAGREE = 1.5
 """Factor between the noise given and the one that repeats show from which it is worth a warning."""
 
+ROUNDING = 1e-6
+"""Of the residual: neighbour differences below this are rounding, not noise."""
+
 COLUMN, GIVEN, REPEATS = "columns of the table", "given", "replicates"
 RESIDUAL = "neighbour differences of the residual"
 
@@ -100,7 +103,8 @@ def _fallback(
         return None, None
     off, factor = deviations(places[known], residual[known])
     sigma = robust_sigma(off / factor[:, None])
-    return (sigma, RESIDUAL) if sigma > 0.0 else (None, None)
+    size = float(np.sqrt(np.mean(residual[known] ** 2)))
+    return (sigma, RESIDUAL) if sigma > ROUNDING * size else (None, None)
 
 
 def _filled(
