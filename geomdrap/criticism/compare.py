@@ -135,9 +135,7 @@ def _noises(
     group = repeats_of(measurement)
     places = np.column_stack([matched.u, matched.v])
     residual = away if measurement.labelled else np.einsum("ij,ij->i", away, matched.normal)[:, None]
-    xyz, said = noise_of(
-        "sigma_xyz", measurement.sigma_xyz, sigma_xyz, measurement.points, group, residual, places
-    )
+    xyz, said = noise_of("sigma_xyz", measurement.sigma_xyz, sigma_xyz, measurement.points, group, residual, places)
     of_shear = Noise(None, None)
     more: tuple[str, ...] = ()
     if measurement.shear is not None and shear is not None:

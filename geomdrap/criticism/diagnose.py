@@ -22,10 +22,13 @@ from geomdrap.criticism.search import Round, judge_of, try_effects
 from geomdrap.criticism.table import tried_of, values_of
 from geomdrap.criticism.words import hints_for
 from geomdrap.effects import available
+from geomdrap.measurement.match import match
+from geomdrap.measurement.outliers import find_outliers
 
 if TYPE_CHECKING:
     from geomdrap.fishnet.seed import Origin
     from geomdrap.measurement import Measurement
+    from geomdrap.measurement.outliers import Outlier
     from geomdrap.surface import Surface
 
 Progress = Callable[[float, str], None]
@@ -47,22 +50,23 @@ def diagnose(
     sigma_xyz: float | None = None,
     sigma_shear: float | None = None,
     reference: tuple[float, float, float] | None = None,
+    project: bool = False,
     effects: Sequence[str] | None = None,
     progress: Progress = lambda share, text: None,
 ) -> Diagnosis:
     """Say which effect the geometric model lacks, by a measurement of the real ply.
 
-    ``origin``, ``angle`` (degrees), ``reference`` and ``pitch`` (mm) as in ``drape``: what the person who laid the ply
-    believes. ``sigma_xyz`` mm and ``sigma_shear`` degrees: noise of single readings where the table has none of its
+    ``origin``, ``angle`` (degrees), ``reference``, ``project`` and ``pitch`` (mm) as in ``drape``: what the person
+    who laid the ply believes. ``sigma_xyz`` mm and ``sigma_shear`` degrees: noise of single readings where the table has none of its
     own. ``effects``: names to try, all of the library if None. ``progress`` is told the share done and the step.
     Raises MeasurementError where the measurement does not go with the part.
     """
     progress(0.0, "matching")
-    layup = Layup(origin, angle, reference, pitch)
-    experiment, outliers, notes = prepare(surface, measurement, layup, sigma_xyz, sigma_shear)
+    layup = Layup(origin, angle, reference, pitch, project)
+    experiment, notes = prepare(surface, measurement, layup, sigma_xyz, sigma_shear)
     names = [name for name in (available() if effects is None else effects) if name != "placement"]
     rounds = search(experiment, names, progress)
-    return conclude(experiment, rounds, outliers, notes)
+    return conclude(experiment, rounds, notes)
 
 
 def search(experiment: Experiment, names: Sequence[str], progress: Progress) -> list[Round]:
@@ -93,7 +97,7 @@ def _teller(progress: Progress, passed: int, count: int) -> Callable[[str], None
 
 
 def chosen(rounds: Sequence[Round]) -> str | None:
-    """The effect that the last round adds, None for none: a further effect must explain enough of the first misfit."""
+    """The effect that the last round adds, None for none: a further one must explain enough of the first misfit."""
     found = rivals(rounds[-1].evidence)
     if not found:
         return None
@@ -113,9 +117,7 @@ def left_over(experiment: Experiment, model: Fitted, scatter: Scatter) -> Leftov
     return leftover(experiment, rows, judge, Residuals(model.fit.residual[rows], model.fit.slopes[rows]), scatter)
 
 
-def conclude(
-    experiment: Experiment, rounds: Sequence[Round], outliers: tuple, notes: tuple[str, ...]
-) -> Diagnosis:
+def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, ...]) -> Diagnosis:
     """The verdict on a finished search."""
     added = [chosen(rounds[: k + 1]) for k in range(len(rounds))]
     names = [name for name in added if name is not None]
@@ -142,10 +144,17 @@ def conclude(
         effects=tuple(model.model.built(model.values)),
         scatter=scatter,
         leftover=left,
-        outliers=outliers,
+        outliers=_outliers(experiment, model),
         hints=hints_for(experiment, rounds, verdict, candidates, model, left),
         notes=notes,
     )
+
+
+def _outliers(experiment: Experiment, model: Fitted) -> tuple[Outlier, ...]:
+    """Points that stand out from the final model; what stood out of a worse one may be no slip of the instrument."""
+    net = experiment.draped(model.model.built(model.values), experiment.pitches[1])
+    found = match(net, experiment.measurement)
+    return find_outliers(net, experiment.measurement, found, *experiment.noise_by_kind())
 
 
 def _verdict(

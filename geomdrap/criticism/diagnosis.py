@@ -37,7 +37,7 @@ class Value:
 class Tried:
     """An effect that was tried: its ``values``, ``evidence`` and errors, and whether it was ``selected``.
 
-    ``rms_position`` mm and ``rms_shear`` degrees, None where not measured; ``cv_error`` held-out error over the noise.
+    ``rms_position`` mm and ``rms_shear`` degrees, None where not measured; ``cv_error``: held out, over the noise.
     ``confounded_with`` lists effects whose signature on these points is nearly the same; ``visible`` holds for each
     parameter the smallest value that these data would show, None where none would.
     """
@@ -73,9 +73,9 @@ class Diagnosis:
 
     ``verdict``: none, placement, an effect, two with a plus, ambiguous or unknown; ``candidates`` the effects that
     explain the measurement; ``confidence`` 0 to 1; ``tried`` every effect, the likeliest first; ``steps`` the models:
-    the net as it was meant, with its placement fitted, with each effect added; ``noise_floor`` the error of a perfect model, over the noise; ``placement`` the fitted one;
-    ``effects`` of the final model with their values, the placement first; ``scatter`` of the lay-up; ``leftover``
-    what the final model leaves; ``hints`` sentences on what to do or measure next.
+    the net as it was meant, with its placement fitted, with each effect added; ``noise_floor`` the error of a perfect
+    model, over the noise; ``placement`` the fitted one; ``effects`` of the final model with their values, the
+    placement first; ``scatter`` of the lay-up; ``leftover`` what the final model leaves; ``hints`` sentences on what to do or measure next.
     """
 
     verdict: str

@@ -70,7 +70,7 @@ def among_all(p_values: Sequence[float]) -> np.ndarray:
 
 
 def rivals(evidence: Sequence[Evidence]) -> tuple[str, ...]:
-    """The best effect that was found, and those that cannot be told from it, the best first; empty if none was found."""
+    """The best effect found, and those that cannot be told from it, the best first; empty if none was found."""
     found = sorted((e for e in evidence if e.found), key=lambda e: e.unknowns * 2.0 - e.gain)
     if not found:
         return ()

@@ -1,4 +1,4 @@
-"""A measurement and the model of it, side by side: what was measured as one vector, and the model's prediction of it."""
+"""A measurement and the model of it: what was measured as one vector, and the model's prediction of it."""
 
 from __future__ import annotations
 
@@ -21,12 +21,16 @@ FINE, COARSE = 7000, 1500  # nodes of the net, for what costs milliseconds and f
 
 @dataclass(frozen=True)
 class Layup:
-    """How the ply is believed to lie: seed, heading (degrees), reference direction, and the pitch (mm) of the model."""
+    """How the ply is believed to lie: seed, heading (degrees), reference direction, and the pitch (mm) of the model.
+
+    ``project`` allows a seed further from the part than a pitch.
+    """
 
     origin: Origin
     angle: float
     reference: tuple[float, float, float] | None = None
     pitch: float | None = None
+    project: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +69,7 @@ class Experiment:
         lay = self.layup
         pitch = pitch or self.pitches[0]
         return drape(
-            self.surface, lay.origin, lay.angle, pitch, effects=effects, reference=lay.reference, project=True
+            self.surface, lay.origin, lay.angle, pitch, effects=effects, reference=lay.reference, project=lay.project
         )
 
     def _flat(self, net: Net) -> np.ndarray:
@@ -76,6 +80,13 @@ class Experiment:
         keep = self.mask & ~rows[:, None]
         kept = keep.T[self.mask.T]
         return replace(self, mask=keep, noise=self.noise[kept], measured=self.measured[kept])
+
+    def noise_by_kind(self) -> tuple[np.ndarray | None, np.ndarray | None]:
+        """Typical noise of positions (mm) and of shear (degrees), for every point (n,); None where not measured."""
+        channel = np.array(self.channels)[self.channel_of()]
+        typical = [self.noise[channel == name] for name in ("normal", "shear")]
+        n = len(self.measurement)
+        return tuple(np.full(n, np.median(t)) if len(t) else None for t in typical)  # type: ignore[return-value]
 
     def channel_of(self) -> np.ndarray:
         """Number of the channel of each value (m,)."""
@@ -110,10 +121,8 @@ def predicted(net: Net, measurement: Measurement, frames: np.ndarray, channels: 
             out[:, c] = np.einsum("nk,nk->n", found.point, frames[:, CHANNELS.index(name)])
         elif name == "shear":
             out[:, c] = found.shear
-        else:
-            measured = measurement.warp if name == "warp" else measurement.weft
-            model = found.warp if name == "warp" else found.weft
-            out[:, c] = turn(measured, model, frames[:, 2])
+        elif (measured := getattr(measurement, name)) is not None:
+            out[:, c] = turn(measured, getattr(found, name), frames[:, 2])
     return out
 
 

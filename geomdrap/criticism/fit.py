@@ -22,7 +22,7 @@ LEAST_STEP = 1e-3  # of a parameter's own step, in every parameter: less ends th
 class Fit:
     """A fitted model: ``values`` (p,), ``residual`` (m,) measured less predicted, ``slopes`` (m, p), ``chi2``.
 
-    ``chi2`` is over the noise that the fit was given; values that the model could not predict are NaN in ``residual``.
+    ``chi2`` is over the noise that the fit was given; ``residual`` is NaN where the model could not predict.
     """
 
     values: np.ndarray
@@ -50,7 +50,9 @@ def fit(
     residual = measured - predict(values)
     lost = np.isnan(residual)
     filled = np.where(lost, 0.0, residual)
-    jacobian = take_slopes(predict, values, measured - residual, steps, low, high) if slopes is None else slopes.copy()
+    jacobian = (
+        take_slopes(predict, values, measured - residual, steps, low, high) if slopes is None else slopes.copy()
+    )
     chi2 = _square(whiten(filled))
     damping = 0.0
     fresh = slopes is None

@@ -141,10 +141,14 @@ class Judge:
         improved = True
         while improved:
             improved = False
+            other = Smoothness.ROUGH if kind is Smoothness.SMOOTH else Smoothness.SMOOTH
             for new_length, new_size, new_kind in (
-                (length, size + 1, kind), (length, size - 1, kind), (length + 1, size, kind), (length - 1, size, kind),
-                (length, size, Smoothness.ROUGH if kind is Smoothness.SMOOTH else Smoothness.SMOOTH),
-            ):  # fmt: skip
+                (length, size + 1, kind),
+                (length, size - 1, kind),
+                (length + 1, size, kind),
+                (length - 1, size, kind),
+                (length, size, other),
+            ):
                 if not (0 <= new_length < len(self.lengths) and 0 <= new_size < len(SIZES)):
                     continue
                 there = here(new_length, new_size, new_kind)
@@ -155,16 +159,26 @@ class Judge:
 
 def square_beside(residual: np.ndarray, slopes: np.ndarray) -> float:
     """Squared length of a whitened residual (m,) after the best step along whitened slopes (m, p)."""
-    q = np.linalg.qr(slopes / (np.linalg.norm(slopes, axis=0) + 1e-300))[0] if slopes.size else slopes
+    q = spanned(slopes)
     left = residual - q @ (q.T @ residual)
     return float(left @ left)
+
+
+def spanned(columns: np.ndarray) -> np.ndarray:
+    """Orthonormal columns (m, r) that span those given (m, p)."""
+    if not columns.size:
+        return columns
+    scaled = columns / (np.linalg.norm(columns, axis=0) + 1e-300)
+    u, size, _ = np.linalg.svd(scaled, full_matrices=False)
+    return np.asarray(u[:, size > 1e-8 * size.max(initial=0.0)])
 
 
 def correlation_lengths(at: np.ndarray) -> tuple[float, ...]:
     """Correlation lengths that points (n, 2) mm can tell: from their spacing to a good part of their patch."""
     from scipy.spatial import cKDTree
 
-    spacing = float(np.median(cKDTree(at).query(at, k=2)[0][:, 1])) or 1.0
+    near = np.asarray(cKDTree(at).query(at, k=2)[0])
+    spacing = float(np.median(near[:, 1])) or 1.0
     longest = WIDEST * float(np.ptp(at, axis=0).max())
     count = max(int(np.floor(np.log(max(longest / (1.2 * spacing), 1.0)) / np.log(RATIO))), 0)
     return tuple(1.2 * spacing * RATIO**k for k in range(count + 1))

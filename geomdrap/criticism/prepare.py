@@ -12,7 +12,7 @@ from geomdrap.errors import MeasurementError
 from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
 from geomdrap.measurement.match import Matched, match
 from geomdrap.measurement.noise import noise_of, repeats_of
-from geomdrap.measurement.outliers import Outlier, find_outliers
+from geomdrap.measurement.outliers import find_outliers
 from geomdrap.measurement.plausible import check_labels, require_on_part
 
 if TYPE_CHECKING:
@@ -30,8 +30,8 @@ def prepare(
     layup: Layup,
     sigma_xyz: float | None = None,
     sigma_shear: float | None = None,
-) -> tuple[Experiment, tuple[Outlier, ...], tuple[str, ...]]:
-    """The experiment, its outliers, and notes on what was chosen.
+) -> tuple[Experiment, tuple[str, ...]]:
+    """The experiment, without the points that stand out from their neighbours, and notes on what was chosen.
 
     ``sigma_xyz`` mm and ``sigma_shear`` degrees apply where the table has no noise of its own; with neither, noise is
     read from how neighbouring residuals differ. Raises MeasurementError where nothing can be compared.
@@ -43,7 +43,16 @@ def prepare(
     pitches = _pitches(surface, measurement, layup)
     empty = np.zeros(0)
     bare = Experiment(
-        surface, measurement, lay, np.zeros((0, 2)), np.zeros((0, 3, 3)), (), np.zeros((0, 0), bool), empty, empty, pitches
+        surface,
+        measurement,
+        lay,
+        np.zeros((0, 2)),
+        np.zeros((0, 3, 3)),
+        (),
+        np.zeros((0, 0), bool),
+        empty,
+        empty,
+        pitches,
     )
     net = bare.draped()
     found = match(net, measurement)
@@ -59,8 +68,7 @@ def prepare(
     table = predicted(net, measurement, frames, channels)
     mask = np.isfinite(values) & np.isfinite(table) & np.isfinite(at).all(axis=1)[:, None]
     sigma, more = _noise(measurement, channels, values, values - table, at, sigma_xyz, sigma_shear)
-    outside = find_outliers(net, measurement, found, *_by_kind(channels, sigma))
-    for outlier in outside:
+    for outlier in find_outliers(net, measurement, found, *_by_kind(channels, sigma)):
         kind = [name in POSITION for name in channels]
         mask[outlier.row] &= ~np.array(kind) if outlier.kind == "position" else np.array(kind)
     if not mask.any():
@@ -68,7 +76,7 @@ def prepare(
     experiment = Experiment(
         surface, measurement, lay, at, frames, channels, mask, flatten(sigma, mask), flatten(values, mask), pitches
     )
-    return experiment, outside, (*notes, *more)
+    return experiment, (*notes, *more)
 
 
 def thinned(measurement: Measurement, notes: list[str]) -> Measurement:

@@ -19,7 +19,11 @@ def verdict_sentence(d: Diagnosis) -> str:
     if d.verdict == AMBIGUOUS:
         return f"These effects explain the measurement equally well: {_and(d.candidates)}."
     if d.verdict == UNKNOWN:
-        found = f" {_and(d.candidates)} explain{'s' if len(d.candidates) == 1 else ''} part of it." if d.candidates else ""
+        found = (
+            f" {_and(d.candidates)} explain{'s' if len(d.candidates) == 1 else ''} part of it."
+            if d.candidates
+            else ""
+        )
         return f"Something is missing that no effect of the library explains.{found}"
     chosen = [t for t in d.tried if t.selected]
     values = "; ".join(f"{t.name} ({_list(t.values)})" for t in chosen)
@@ -29,12 +33,11 @@ def verdict_sentence(d: Diagnosis) -> str:
 def error_sentence(d: Diagnosis) -> str:
     """How the error falls."""
     first, last = d.steps[0], d.steps[-1]
-    text = (
+    return (
         f"Error over the noise: {first.error:.2f} as meant, {d.steps[1].error:.2f} with the placement fitted"
         + (f", {last.error:.2f} with all effects" if len(d.steps) > 2 else "")
         + f" (held out {last.cv_error:.2f}); a perfect model would have {d.noise_floor:.2f}."
     )
-    return text
 
 
 def rival_sentence(d: Diagnosis) -> str | None:
@@ -51,7 +54,7 @@ def rival_sentence(d: Diagnosis) -> str | None:
 
 
 def unseen_sentences(d: Diagnosis) -> list[str]:
-    """Effects that were not found, with the smallest size that would have been; and those that cannot be seen at all."""
+    """Effects that were not found, with the smallest size that would have been, and those that cannot be seen."""
     seen, blind = [], []
     for t in d.tried:
         if t.selected or t.name in d.candidates:
@@ -87,11 +90,12 @@ def _row(t: Tried) -> tuple[str, ...]:
 
 
 def _list(values: tuple[Value, ...]) -> str:
-    return ", ".join(f"{v.name} {v.value:.3g} ± {1.96 * v.sigma:.1g}{_unit(v.unit)}" for v in values)
+    # no-break spaces: a value stays on one line with its interval
+    return ", ".join(f"{v.name}\u00a0{v.value:.3g}\u00a0±\u00a0{1.96 * v.sigma:.1g}{_unit(v.unit)}" for v in values)
 
 
 def _unit(unit: str) -> str:
-    return f" {unit}" if unit else ""
+    return f"\u00a0{unit}" if unit else ""
 
 
 def _and(names: tuple[str, ...]) -> str:

@@ -80,7 +80,11 @@ def trends(experiment: Experiment, model: Fitted) -> list[str]:
     net = experiment.draped(model.model.built(model.values))
     noise = experiment.noise
     channel = np.array(experiment.channels)[experiment.channel_of()]
-    given = {kind: float(np.median(noise[channel == c])) for kind, c in (("xyz", "normal"), ("shear", "shear")) if (channel == c).any()}
+    given = {
+        kind: float(np.median(noise[channel == c]))
+        for kind, c in (("xyz", "normal"), ("shear", "shear"))
+        if (channel == c).any()
+    }
     comparison = compare_net(net, experiment.measurement, sigma_xyz=given.get("xyz"), sigma_shear=given.get("shear"))
     return [
         f"the {t.kind} residual {'grows' if t.rho > 0 else 'falls'} with {AGAINST[t.against]} (rank correlation {t.rho:.2f})"

@@ -43,7 +43,18 @@ def draw_before_after(first: Comparison, second: Comparison, path: Path) -> None
     """Draw two comparisons of one measurement one above the other, on one scale of colours and lengths."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(WIDTH, 2 * (HEADER + PANELS) + BARS), dpi=DOTS, facecolor=palette.PAPER)
+    figure = Figure(figsize=(WIDTH, pair_height()), dpi=DOTS, facecolor=palette.PAPER)
+    draw_pair(figure, first, second)
+    save(figure, path)
+
+
+def pair_height() -> float:
+    """Height of two comparisons one above the other, inch."""
+    return 2 * (HEADER + PANELS) + BARS
+
+
+def draw_pair(figure: Any, first: Comparison, second: Comparison) -> None:
+    """Draw two comparisons at the foot of a page."""
     scale = scale_of([first, second])
     camera = choose_camera(first)
     for k, (words, comparison) in enumerate((("before", first), ("after", second))):
@@ -51,7 +62,6 @@ def draw_before_after(first: Comparison, second: Comparison, path: Path) -> None
         _heading(figure, comparison, bottom + PANELS, f"{words.capitalize()}: ")
         _panels(figure, comparison, bottom, scale, camera)
     _bars(figure, second, 0.0, scale)
-    save(figure, path)
 
 
 def save(figure: Any, path: Path) -> None:
