@@ -18,8 +18,8 @@ LIBRARY = (
     "weave-skew",
     "steering",
     "slip",
-    # thickness
-    # bridging
+    "thickness",
+    "bridging",
     # shear-stiffness
     # locking
     # shear-asymmetry
