@@ -29,14 +29,9 @@ def placed(diagnosis: Diagnosis) -> Comparison:
 
 def _compared(diagnosis: Diagnosis, effects: Sequence[Effect]) -> Comparison:
     experiment = diagnosis.experiment
-    channel = np.array(experiment.channels)[experiment.channel_of()]
-    sigma = {name: float(np.median(experiment.noise[channel == name])) for name in set(channel.tolist())}
-    return compare_net(
-        experiment.draped(effects, experiment.pitches[1]),
-        experiment.measurement,
-        sigma_xyz=sigma.get("normal"),
-        sigma_shear=sigma.get("shear", sigma.get("warp", sigma.get("weft"))),
-    )
+    sigma_xyz, sigma_shear = (None if s is None else float(s[0]) for s in experiment.noise_by_kind())
+    net = experiment.draped(effects, experiment.pitches[1])
+    return compare_net(net, experiment.measurement, sigma_xyz=sigma_xyz, sigma_shear=sigma_shear)
 
 
 def difference(first: Comparison, second: Comparison) -> Comparison:

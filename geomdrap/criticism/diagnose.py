@@ -57,8 +57,9 @@ def diagnose(
     """Say which effect the geometric model lacks, by a measurement of the real ply.
 
     ``origin``, ``angle`` (degrees), ``reference``, ``project`` and ``pitch`` (mm) as in ``drape``: what the person
-    who laid the ply believes. ``sigma_xyz`` mm and ``sigma_shear`` degrees: noise of single readings where the table has none of its
-    own. ``effects``: names to try, all of the library if None. ``progress`` is told the share done and the step.
+    who laid the ply believes. ``sigma_xyz`` mm and ``sigma_shear`` degrees: noise of single readings where the table
+    has none of its own. ``effects``: names to try, all of the library if None. ``progress`` is told the share done
+    and the step.
     Raises MeasurementError where the measurement does not go with the part.
     """
     progress(0.0, "matching")

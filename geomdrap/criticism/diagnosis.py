@@ -75,7 +75,8 @@ class Diagnosis:
     explain the measurement; ``confidence`` 0 to 1; ``tried`` every effect, the likeliest first; ``steps`` the models:
     the net as it was meant, with its placement fitted, with each effect added; ``noise_floor`` the error of a perfect
     model, over the noise; ``placement`` the fitted one; ``effects`` of the final model with their values, the
-    placement first; ``scatter`` of the lay-up; ``leftover`` what the final model leaves; ``hints`` sentences on what to do or measure next.
+    placement first; ``scatter`` of the lay-up; ``leftover`` what the final model leaves; ``hints`` what to do next or
+    to measure.
     """
 
     verdict: str

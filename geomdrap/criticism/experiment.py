@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from geomdrap.fishnet import Effect, Fabric, Net, drape
+from geomdrap.fishnet.effect import in_order, surface_with
 
 if TYPE_CHECKING:
     from geomdrap.fishnet.seed import Origin
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 CHANNELS = ("along", "across", "normal", "shear", "warp", "weft")
+KEPT = 12  # surfaces with effects on them that are kept
 FINE, COARSE = 7000, 1500  # nodes of the net, for what costs milliseconds and for what costs seconds
 
 
@@ -52,6 +54,7 @@ class Experiment:
     noise: np.ndarray
     measured: np.ndarray
     pitches: tuple[float, float]
+    surfaces: dict[str, Surface] = field(default_factory=dict)
 
     def predict(self, effects: Sequence[Effect] = ()) -> np.ndarray:
         """The model's values (m,), NaN where it has none."""
@@ -68,9 +71,21 @@ class Experiment:
         """The model's net with effects, at the model's own pitch (mm) unless another is given."""
         lay = self.layup
         pitch = pitch or self.pitches[0]
-        return drape(
-            self.surface, lay.origin, lay.angle, pitch, effects=effects, reference=lay.reference, project=lay.project
-        )
+        surface, others = self._surface_under(effects)
+        return drape(surface, lay.origin, lay.angle, pitch, effects=others, reference=lay.reference, project=lay.project)
+
+    def _surface_under(self, effects: Sequence[Effect]) -> tuple[Surface, list[Effect]]:
+        """The surface with the effects that act on it, made once for each of their values; and the other effects."""
+        acting = [e for e in effects if e.stage == "surface"]
+        others = [e for e in effects if e.stage != "surface"]
+        if not acting:
+            return self.surface, others
+        key = repr(sorted((e.name, sorted(e.values.items())) for e in acting))
+        if key not in self.surfaces:
+            if len(self.surfaces) >= KEPT:
+                self.surfaces.pop(next(iter(self.surfaces)))
+            self.surfaces[key] = surface_with(in_order(acting), self.surface)
+        return self.surfaces[key], others
 
     def _flat(self, net: Net) -> np.ndarray:
         return flatten(predicted(net, self.measurement, self.frames, self.channels), self.mask)

@@ -21,8 +21,11 @@ if TYPE_CHECKING:
 Whiten = Callable[[np.ndarray], np.ndarray]
 
 STEP = 0.1  # of a parameter's typical size: the differences with which slopes are taken
-PROBES = (0.3, 1.0, 1.7)  # of the typical size of a one-sided parameter: where the search looks first
+GROWING = (0.3, 1.0, 3.0, 8.0)  # times the typical size of a parameter that grows from 0: where the search looks first
+FALLING = (0.3, 0.6, 0.9, 1.2, 1.5)  # of the way from a parameter's greatest value to its typical one, likewise
 SHAPES = (0.1, 0.35, 0.6, 0.85)  # of the range of a parameter that does nothing alone
+HALVINGS = 3  # of the gaps between probes
+SAME = 3.0  # of chi-square: probes this close do equally well
 NOTHING = 1e-6  # of the noise: less is no signature
 
 
@@ -169,20 +172,40 @@ def _start(
         alone.append(signature(values))
     sizes = [float(np.abs(whiten(s)).max()) for s in alone]
     acting = [k for k in range(len(own)) if sizes[k] > NOTHING]
-    candidates: list[tuple[float, np.ndarray]] = []
     if len(acting) == len(own) and (len(own) > 1 or own[0].low < own[0].neutral < own[0].high):
         # both signs, a slope at nothing: the linear fit is the start
         slopes = np.column_stack([s / (q.typical - q.neutral) for s, q in zip(alone, own, strict=True)])
         step = np.linalg.lstsq(np.column_stack([shifts, whiten(slopes)]), whiten(residual), rcond=1e-9)[0]
         values = _within(neutral + step[p:], own)
         return np.append(base.values + step[:p], values)
-    for values in _probes(own, acting):
-        left = whiten(residual - signature(values))
-        candidates.append((square_beside(left, shifts), values))
-    best = min(candidates, key=lambda c: c[0])[1] if candidates else neutral
+
+    def misfit(values: np.ndarray) -> float:
+        return square_beside(whiten(residual - signature(values)), shifts)
+
+    best = min(_probes(own, acting), key=misfit)
+    if len(own) == 1:
+        best = np.array([_narrowed(lambda x: misfit(np.array([x])), [float(v[0]) for v in _probes(own, acting)])])
     left = whiten(residual - signature(best))
     step = np.linalg.lstsq(shifts, left, rcond=1e-9)[0]
     return np.append(base.values + step, best)
+
+
+def _narrowed(misfit: Callable[[float], float], probes: Sequence[float]) -> float:
+    """The best of the probes, after halving the gaps beside the best a few times.
+
+    Of probes that do equally well the last is taken: an effect that does nothing up to a threshold begins there.
+    """
+    known = {x: misfit(x) for x in probes}
+    for _ in range(HALVINGS):
+        least = min(known.values())
+        best = max(x for x, value in known.items() if value <= least + SAME)
+        order = sorted(known)
+        k = order.index(best)
+        for a, b in ((k, k + 1), (k - 1, k)):
+            if 0 <= a and b < len(order):
+                middle = 0.5 * (order[a] + order[b])
+                known[middle] = misfit(middle)
+    return min(known, key=lambda x: known[x])
 
 
 def _probes(own: Sequence[Parameter], acting: Sequence[int]) -> list[np.ndarray]:
@@ -192,7 +215,8 @@ def _probes(own: Sequence[Parameter], acting: Sequence[int]) -> list[np.ndarray]
         if k not in acting:
             each.append([q.low + f * (q.high - q.low) for f in SHAPES])
         else:
-            each.append([_clip(q.neutral + f * (q.typical - q.neutral), q) for f in PROBES])
+            factors = GROWING if q.typical > q.neutral else FALLING
+            each.append(sorted({_clip(q.neutral + f * (q.typical - q.neutral), q) for f in factors}))
     return [np.array(values) for values in product(*each)]
 
 

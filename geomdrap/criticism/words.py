@@ -67,8 +67,8 @@ def where_they_differ(experiment: Experiment, first: Fitted, second: Fitted) -> 
         return f"{names} explain the measurement equally well"
     k = int(np.nanargmax(away))
     return (
-        f"{names} explain the measurement equally well; they differ most at u = {grid[0][k]:.0f}, v = {grid[1][k]:.0f} "
-        f"mm, by {away[k]:.2g} mm and {abs(g[k] - h[k]):.2g}° of shear: measure there"
+        f"{names} explain the measurement equally well; they differ most at u = {grid[0][k]:.0f}, "
+        f"v = {grid[1][k]:.0f} mm, by {away[k]:.2g} mm and {abs(g[k] - h[k]):.2g}° of shear: measure there"
     )
 
 
@@ -78,16 +78,10 @@ def trends(experiment: Experiment, model: Fitted) -> list[str]:
     from geomdrap.criticism.compare_trends import AGAINST
 
     net = experiment.draped(model.model.built(model.values))
-    noise = experiment.noise
-    channel = np.array(experiment.channels)[experiment.channel_of()]
-    given = {
-        kind: float(np.median(noise[channel == c]))
-        for kind, c in (("xyz", "normal"), ("shear", "shear"))
-        if (channel == c).any()
-    }
-    comparison = compare_net(net, experiment.measurement, sigma_xyz=given.get("xyz"), sigma_shear=given.get("shear"))
+    sigma_xyz, sigma_shear = (None if s is None else float(s[0]) for s in experiment.noise_by_kind())
+    comparison = compare_net(net, experiment.measurement, sigma_xyz=sigma_xyz, sigma_shear=sigma_shear)
     return [
-        f"the {t.kind} residual {'grows' if t.rho > 0 else 'falls'} with {AGAINST[t.against]} (rank correlation {t.rho:.2f})"
+        f"the {t.kind} residual {'grows' if t.rho > 0 else 'falls'} with {AGAINST[t.against]} (rho {t.rho:.2f})"
         for t in comparison.trends
         if t.rho is not None and t.p is not None and t.p < 0.01
     ]
