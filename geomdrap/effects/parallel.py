@@ -44,7 +44,7 @@ def offset_vectors(surface: Surface) -> np.ndarray:
     With angle weights w and normals n of the facets at a vertex, the vector m for which Σ w (n·m − 1)² is least puts
     all planes at distance 1; along directions in which the normals hardly differ it is not determined, and 0 there.
     """
-    weight = corner_angles(surface)
+    weight = surface.corner_angles
     normal = surface.normals
     outer = normal[:, :, None] * normal[:, None, :]
     vertex = surface.triangles.ravel()
@@ -68,13 +68,3 @@ def offset_vectors(surface: Surface) -> np.ndarray:
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     moved: np.ndarray = vectors * np.minimum(1.0, MITRE / np.maximum(length, 1e-300))
     return moved
-
-
-def corner_angles(surface: Surface) -> np.ndarray:
-    """Interior angles (m, 3) of the facets, radians."""
-    corners = surface.points[surface.triangles]
-    out = np.empty(surface.triangles.shape)
-    for k in range(3):
-        a, b = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
-        out[:, k] = np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1))
-    return out

@@ -20,10 +20,9 @@ LIBRARY = (
     "slip",
     "thickness",
     "bridging",
-    # shear-stiffness
-    # locking
-    # shear-asymmetry
-    # crossing-slip
+    "shear-stiffness",
+    "locking",
+    "shear-asymmetry",
     "springback",
 )
 

@@ -19,6 +19,7 @@ from geomdrap.fishnet.march import fill_quadrants, lay_generators
 from geomdrap.fishnet.net import Net, cells_of
 from geomdrap.fishnet.pitch import check_pitch, choose_pitch, coarse_facets
 from geomdrap.fishnet.place import APART, all_in_space, place_seed
+from geomdrap.fishnet.relax import relaxed
 from geomdrap.fishnet.shear import shears, yarn_directions
 from geomdrap.fishnet.shift import Shift, displaced
 from geomdrap.fishnet.slide import fill_quadrants_sliding, strain_on_axis
@@ -83,6 +84,8 @@ def drape(
         extent = larger
     _require_cells(grid, part, pitch)
     net = _as_net(surface, part, start, angle, pitch, reach, fabric, extent, mesh, grid, notes)
+    if fabric.relaxes:
+        net = relaxed(net)
     return replace(net_with(acting, net), effects=acting)
 
 

@@ -149,6 +149,14 @@ class Surface:
         return _frozen(unfold.vertex_normals(self.points, self.triangles, self.normals))[0]
 
     @cached_property
+    def corner_angles(self) -> Floats:
+        """Interior angles of the faces at their corners (m, 3) radians."""
+        corners = self.points[self.triangles]
+        to_next, to_last = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
+        sine = np.linalg.norm(np.cross(to_next, to_last), axis=2)
+        return _frozen(np.arctan2(sine, (to_next * to_last).sum(axis=2)))[0]
+
+    @cached_property
     def deficits(self) -> Floats:
         """Angle deficits at the vertices (n,) radians: 2π less the angles of the faces there; 0 on the rim."""
         return _frozen(unfold.angle_deficits(self.points, self.triangles, self.neighbours))[0]

@@ -1,0 +1,352 @@
+"""Nets of least energy: a fabric that resists shear gives way until stretching and shearing are in balance.
+
+The nodes of the geometric net that have cells move on the part; the seed is held, and the first warp piece keeps its
+heading. Newton's method with exact second derivatives, the curvature of the part among them, in two unknowns a node.
+A step that does not lower the energy is shortened, then damped (Levenberg). Minimal is the net when the forces along
+the surface vanish against those that balance each other.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.errors import DrapeError
+from geomdrap.fishnet.grid import Status
+from geomdrap.fishnet.net import cells_of
+from geomdrap.fishnet.relax_energy import Law, derivatives, energy
+from geomdrap.fishnet.relax_surface import Footing, smooth_normals, stand, tangents
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
+    from geomdrap.fishnet.fabric import Fabric
+    from geomdrap.fishnet.net import Net
+    from geomdrap.surface import Surface
+
+DEFAULT_RATIO = 0.003  # shear stiffness where only its asymmetry is given
+SOFT_RATIO = 1e-6  # shear stiffness where only a locking angle is given
+LOCK_STIFFNESS = 1.0  # of the yarns: resistance to shear beyond the locking angle
+BALANCED = 1e-6  # of the largest forces at a node: what may be left of them
+GOOD_ENOUGH = 1e-3  # beyond, the net is refused
+LONGEST_STEP = 1.5  # pieces
+LEAST_DAMPING, MOST_DAMPING = 1e-10, 10.0  # of the largest stiffness
+ROUNDING = 1e-12
+UNEVEN = 1e-6  # of the energy: how much of it facets leave to chance
+CLOSE = 0.1  # unrest below which second derivatives are taken in full
+PATIENCE = 3  # rounds in which the unrest may fail to halve near the end
+ROUNDS = 80
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What is held fixed while a net relaxes; arrays as in ``relax_energy``.
+
+    ``x0`` (nu, nv, 3) is the geometric net, ``number`` (nu, nv) of the nodes that move, -1 for others; ``fixed`` node and ``guided`` node, which moves only in
+    the plane through the seed across ``side``.
+    """
+
+    surface: Surface
+    corner_normals: np.ndarray
+    valid: np.ndarray
+    x0: np.ndarray
+    rest_u: np.ndarray
+    rest_v: np.ndarray
+    law: Law
+    number: np.ndarray
+    fixed: tuple[int, int]
+    guided: tuple[int, int]
+    side: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Relaxed:
+    """Where nodes have come to rest: ``x`` (nu, nv, 3) mm, ``footing`` of the n that move, energy, and ``unrest``:
+
+    the largest tangential force that is left at a node over the largest sum of forces at a node.
+    """
+
+    x: np.ndarray
+    footing: Footing
+    energy: float
+    unrest: float
+    rounds: int
+
+
+def law_of(fabric: Fabric) -> Law:
+    """The energy of a fabric; where no stiffness is given it is as small as the rest allows."""
+    given = fabric.shear_stiffness
+    default = DEFAULT_RATIO if fabric.shear_asymmetry else SOFT_RATIO
+    angle = fabric.locking_angle
+    return Law(
+        ratio=default if given is None else given,
+        alpha=fabric.shear_asymmetry or 0.0,
+        lock=0.0 if angle is None else LOCK_STIFFNESS,
+        lock_sine=1.0 if angle is None else math.sin(math.radians(angle)),
+    )
+
+
+def relaxed(net: Net, start: np.ndarray | None = None) -> Net:
+    """The net of least energy of ``net.fabric``, from the geometric net or from nodes ``start`` (nu, nv, 3) mm.
+
+    Raises DrapeError where the forces do not come into balance.
+    """
+    problem = pose(net)
+    found = relax(problem, net.lattice if start is None else start)
+    if not found.unrest <= GOOD_ENOUGH:
+        raise DrapeError(
+            f"the net of {net.surface.source} does not come to rest (forces out of balance by {found.unrest:.1g}): "
+            "the part has edges or shears too far; use a finer mesh, another pitch, or a smaller blank"
+        )
+    return as_net(net, problem, found)
+
+
+def pose(net: Net) -> Problem:
+    """The problem of relaxing a geometric net. Raises DrapeError where the seed has no cells around it."""
+    lattice, valid = net.lattice, net.lattice_valid
+    moves = np.zeros(net.face.shape, bool)
+    for corner in (np.s_[:-1, :-1], np.s_[1:, :-1], np.s_[1:, 1:], np.s_[:-1, 1:]):
+        moves[corner] |= valid
+    warp, weft = np.zeros(lattice[1:, :, 0].shape, bool), np.zeros(lattice[:, 1:, 0].shape, bool)
+    warp[:, :-1] |= valid
+    warp[:, 1:] |= valid
+    weft[:-1] |= valid
+    weft[1:] |= valid
+    i, j = int(np.abs(net.u).argmin()), int(np.abs(net.v).argmin())
+    beside = [k for k in (i + 1, i - 1) if 0 <= k < len(net.u) and warp[min(i, k), j]]
+    if not beside:
+        raise DrapeError("the seed has no cell beside it from which a net could relax; move it away from the rim")
+    number = np.full(moves.shape, -1)
+    number[moves] = np.arange(moves.sum())
+    surface = net.surface.lidded
+    normals = smooth_normals(surface.triangles, surface.normals, surface.corner_angles, len(surface.points))
+    x = np.full(lattice.shape, np.nan)
+    x[moves] = stand(surface, normals, lattice[moves]).lifted
+    return Problem(
+        surface=surface,
+        corner_normals=normals,
+        valid=valid,
+        x0=x,
+        rest_u=np.where(warp, np.linalg.norm(np.diff(x, axis=0), axis=2), 0.0),
+        rest_v=np.where(weft, np.linalg.norm(np.diff(x, axis=1), axis=2), 0.0),
+        law=law_of(net.fabric),
+        number=number,
+        fixed=(i, j),
+        guided=(beside[0], j),
+        side=np.cross(net.normal0, net.warp0),
+    )
+
+
+def relax(problem: Problem, start: np.ndarray) -> Relaxed:
+    """Nodes of least energy, from ``start`` (nu, nv, 3) mm."""
+    moves = problem.number >= 0
+    x = np.where(moves[..., None], start, 0.0)
+    for node in (problem.fixed, problem.guided):  # what is held, or held to a plane, starts where it is held
+        x[node] = problem.x0[node]
+    footing = stand(problem.surface, problem.corner_normals, x[moves])
+    x[moves] = footing.lifted
+    now, damping, stuck = _energy(problem, x), 0.0, 0
+    full = False  # far from the end second derivatives need not be positive
+    best = Relaxed(x, footing, now, math.inf, 0)
+    for n in range(ROUNDS):
+        equations = _equations(problem, x, footing, full)
+        stuck = stuck + 1 if equations.unrest > 0.5 * best.unrest else 0
+        if equations.unrest < best.unrest:
+            best = Relaxed(x, footing, now, equations.unrest, n)
+        if best.unrest < BALANCED or (best.unrest < GOOD_ENOUGH and stuck > PATIENCE):
+            break
+        step = _solve(equations, damping)
+        moved = _searched(problem, x, footing, equations, step, now) if equations.gradient @ step < 0.0 else None
+        if moved is None and damping > MOST_DAMPING:
+            break
+        if moved is None:
+            damping, full = max(30.0 * damping, LEAST_DAMPING), False
+            continue
+        x, footing, now, whole = moved
+        damping = 0.0 if damping <= LEAST_DAMPING else 0.03 * damping if whole else damping
+        full = damping == 0.0 and equations.unrest < CLOSE
+    return best
+
+
+def _energy(problem: Problem, x: np.ndarray) -> float:
+    return float(energy(x, problem.valid, problem.rest_u, problem.rest_v, problem.law))
+
+
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """Newton's equations: ``gradient`` (2n,), ``matrix`` (2n, 2n) along the tangent vectors ``bases`` (n, 3, 2), and
+
+    ``unrest`` as in ``Relaxed``.
+    """
+
+    gradient: np.ndarray
+    matrix: csc_array
+    bases: np.ndarray
+    unrest: float
+
+
+def _equations(problem: Problem, x: np.ndarray, footing: Footing, full: bool) -> Equations:
+    """Newton's equations at nodes x (nu, nv, 3)."""
+    from scipy.sparse import csc_array
+
+    moves = problem.number >= 0
+    bases = _bases(problem, footing)
+    basis = np.zeros((*moves.shape, 3, 2))
+    basis[moves] = bases
+    g, h, size = derivatives(x, basis, problem.valid, problem.rest_u, problem.rest_v, problem.law, full)
+    gradient = np.einsum("nxa,nx->na", bases, g[moves]).ravel()
+    bending = np.einsum("nxa,nxy,nyb->nab", bases, footing.turning, bases)
+    if full:
+        pressure = (g[moves] * footing.normal).sum(axis=1)
+        h[moves, 1, 1] -= pressure[:, None, None] * 0.5 * (bending + bending.swapaxes(1, 2))
+    rows, columns, values = _entries(problem.number, h)
+    for node, first in ((problem.fixed, 0), (problem.guided, 1)):
+        at = 2 * problem.number[node] + np.arange(first, 2)
+        rows, columns, values = np.append(rows, at), np.append(columns, at), np.append(values, np.full(len(at), 1.0))
+    n = 2 * len(bases)
+    left = float(np.linalg.norm(gradient.reshape(-1, 2), axis=1).max())
+    return Equations(gradient, csc_array((values, (rows, columns)), shape=(n, n)), bases, left / float(size.max()))
+
+
+def _bases(problem: Problem, footing: Footing) -> np.ndarray:
+    """Tangent vectors (n, 3, 2) along which nodes may move: none for the seed, one for the node beside it."""
+    toward = np.eye(3)[np.abs(footing.normal).argmin(axis=1)]
+    guided = problem.number[problem.guided]
+    toward[guided] = np.cross(problem.side, footing.normal[guided])
+    bases = tangents(footing.normal, toward)
+    bases[guided, :, 1] = 0.0
+    bases[problem.number[problem.fixed]] = 0.0
+    return bases
+
+
+def _entries(number: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rows, columns and values of the sparse second derivative."""
+    here = np.argwhere(number >= 0)
+    rows, columns, values = [], [], []
+    for di in (-1, 0, 1):
+        for dj in (-1, 0, 1):
+            k, m = here[:, 0] + di, here[:, 1] + dj
+            ok = (k >= 0) & (m >= 0) & (k < number.shape[0]) & (m < number.shape[1])
+            ok[ok] = number[k[ok], m[ok]] >= 0
+            i, j = here[ok].T
+            a, b = np.divmod(np.arange(4), 2)
+            rows.append((2 * number[i, j][:, None] + a).ravel())
+            columns.append((2 * number[k[ok], m[ok]][:, None] + b).ravel())
+            values.append(h[i, j, di + 1, dj + 1].reshape(-1))
+    return np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
+
+
+def _solve(equations: Equations, damping: float) -> np.ndarray:
+    """Damped Newton step (2n,)."""
+    from scipy.sparse import diags_array
+    from scipy.sparse.linalg import splu
+
+    matrix, gradient = equations.matrix, equations.gradient
+    shift = (damping + 1e-13) * max(float(matrix.diagonal().max()), 1e-300)
+    damped = (matrix + diags_array(np.full(len(gradient), shift))).tocsc()
+    factors = splu(damped, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    step: np.ndarray = -factors.solve(gradient)
+    return step
+
+
+def _searched(
+    problem: Problem, x: np.ndarray, footing: Footing, equations: Equations, step: np.ndarray, now: float
+) -> tuple[np.ndarray, Footing, float, bool] | None:
+    """Nodes after the longest of a few shares of the step that lowers the energy, and whether it is all of it.
+
+    Facets leave the energy a little uneven: near the end, where its slope is followed to where it vanishes, it may
+    rise by a share of ``UNEVEN``.
+    """
+    moves = problem.number >= 0
+    way = np.einsum("nxa,na->nx", equations.bases, step.reshape(-1, 2))
+    longest = float(np.linalg.norm(way, axis=1).max())
+    if not math.isfinite(longest):
+        return None
+    share = min(1.0, LONGEST_STEP * float(problem.rest_u.max()) / max(longest, 1e-300))
+    whole = share == 1.0
+    for _ in range(4):
+        moved = stand(problem.surface, problem.corner_normals, footing.point + share * way)
+        y = x.copy()
+        y[moves] = moved.lifted
+        then = _energy(problem, y)
+        near = whole and equations.unrest < GOOD_ENOUGH
+        if then <= now * (1.0 + (UNEVEN if near else ROUNDING)):
+            return y, moved, then, whole
+        share, whole = 0.25 * share, False
+    return None
+
+
+def as_net(net: Net, problem: Problem, found: Relaxed) -> Net:
+    """The net with its nodes where they came to rest; those that came to lie beyond the rim are off the part."""
+    moves = problem.number >= 0
+    off = np.ones(moves.shape, bool)
+    off[moves] = found.footing.outside > 1e-9 * net.pitch
+    lattice = np.full(found.x.shape, np.nan)
+    lattice[moves] = found.footing.point
+    lattice[off] = np.nan
+    face = np.full(moves.shape, -1)
+    face[moves] = found.footing.face
+    face[off | (face >= len(net.surface.triangles))] = -1
+    face[~np.isfinite(net.points[..., 0])] = -1  # in a hole
+    points = np.where(face[..., None] < 0, np.nan, lattice)
+    status = net.status_around.copy()
+    status[1:-1, 1:-1][np.isfinite(net.lattice[..., 0]) & off] = Status.OFF_PART
+    lattice_valid = net.lattice_valid & np.isfinite(cells_of(lattice[..., 0])).all(axis=0)
+    cell_valid = net.cell_valid & np.isfinite(cells_of(points[..., 0])).all(axis=0)
+    cells, nodes = (a - b for a, b in zip(chord_shears(found.x, net.lattice_valid), chord_shears(problem.x0, net.lattice_valid), strict=True))
+    stretch_u = np.linalg.norm(np.diff(found.x, axis=0), axis=2) / np.where(problem.rest_u > 0, problem.rest_u, np.nan)
+    stretch_v = np.linalg.norm(np.diff(found.x, axis=1), axis=2) / np.where(problem.rest_v > 0, problem.rest_v, np.nan)
+    long, wide = net.sides or (np.diff(net.u)[:, None], np.diff(net.v)[None, :])
+    return replace(
+        net,
+        points=points,
+        face=face.astype(net.face.dtype),
+        status_around=status,
+        lattice=lattice,
+        lattice_valid=lattice_valid,
+        cell_valid=cell_valid,
+        cell_shear=np.where(cell_valid, net.cell_shear + cells, np.nan),
+        shear=np.where(np.isfinite(points[..., 0]), net.shear + nodes, np.nan),
+        yarns=_yarns(lattice, found, moves),
+        sides=(long * stretch_u, wide * stretch_v),
+        notes=(*net.notes, f"net of least energy, forces balanced to {found.unrest:.0e} in {found.rounds} rounds"),
+    )
+
+
+def chord_shears(x: np.ndarray, valid: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Shear of cells (nu - 1, nv - 1) and at nodes (nu, nv), degrees, from the straight lines between nodes."""
+    total, count = np.zeros(x.shape[:2]), np.zeros(x.shape[:2])
+    sines = np.zeros(valid.shape)
+    p = cells_of(x)
+    for k, corner in enumerate((np.s_[:-1, :-1], np.s_[1:, :-1], np.s_[1:, 1:], np.s_[:-1, 1:])):
+        beside_u, beside_v = (p[(1, 0, 3, 2)[k]] - p[k]), (p[(3, 2, 1, 0)[k]] - p[k])
+        size = np.linalg.norm(beside_u, axis=2) * np.linalg.norm(beside_v, axis=2)
+        cosine = (beside_u * beside_v).sum(axis=2) / np.where(valid, size, 1.0)
+        sine = np.where(valid, (-1) ** k * np.clip(cosine, -1.0, 1.0), 0.0)
+        sines += 0.25 * sine
+        total[corner] += np.degrees(np.arcsin(sine))
+        count[corner] += valid
+    cells = np.where(valid, np.degrees(np.arcsin(np.clip(sines, -1.0, 1.0))), np.nan)
+    return cells, np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+
+def _yarns(lattice: np.ndarray, found: Relaxed, moves: np.ndarray) -> np.ndarray:
+    """Unit directions of warp and weft (2, nu, nv, 3) in the tangent plane: the mean of both pieces at a node."""
+    normal = np.zeros(lattice.shape)
+    normal[moves] = found.footing.normal
+    out = np.zeros((2, *lattice.shape))
+    for family in range(2):
+        piece = np.nan_to_num(np.diff(lattice, axis=family))
+        length = np.linalg.norm(piece, axis=2, keepdims=True)
+        unit = piece / np.where(length > 0.0, length, 1.0)
+        low = (np.s_[:-1], np.s_[:, :-1])[family]
+        high = (np.s_[1:], np.s_[:, 1:])[family]
+        out[family][low] += unit
+        out[family][high] += unit
+    out -= (out * normal).sum(axis=3, keepdims=True) * normal
+    length = np.linalg.norm(out, axis=3, keepdims=True)
+    yarns: np.ndarray = np.where(length > 0.0, out / np.where(length > 0.0, length, 1.0), np.nan).astype(np.float32)
+    return yarns
