@@ -147,8 +147,13 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         leftover=left,
         outliers=_outliers(experiment, model),
         hints=hints_for(experiment, rounds, verdict, candidates, model, left),
-        notes=notes,
+        notes=(*notes, *_failures(rounds)),
     )
+
+
+def _failures(rounds: Sequence[Round]) -> tuple[str, ...]:
+    """What could not be tried."""
+    return tuple(f"{name} could not be tried: no net with it covers these points" for name in rounds[0].failed)
 
 
 def _outliers(experiment: Experiment, model: Fitted) -> tuple[Outlier, ...]:

@@ -20,7 +20,7 @@ CLIMB = 3  # models for which the likeliest scatter is searched: the base and th
 class Round:
     """One round of the search: a base model, every effect tried on top of it, and the evidence.
 
-    ``rows`` (m,) bool are the values that all models predict; ``judge`` knows their noise. ``scatter`` holds the
+    ``failed`` names effects that could not be tried on this part. ``rows`` (m,) bool are the values that all models predict; ``judge`` knows their noise. ``scatter`` holds the
     likeliest lay-up scatter of the base and of every trial, ``cv_base`` the base's held-out error.
     """
 
@@ -31,6 +31,7 @@ class Round:
     rows: np.ndarray
     judge: Judge
     cv_base: float
+    failed: tuple[str, ...]
 
     def trial(self, effect: str) -> tuple[Fitted, Scatter]:
         """The trial of an effect and its scatter."""
@@ -42,12 +43,16 @@ def try_effects(
     experiment: Experiment, base: Fitted, whiten: Whiten, names: Sequence[str], done: Callable[[str], None]
 ) -> Round:
     """Fit every effect on top of the base, and weigh what speaks for it. ``done`` is told each name."""
-    trials = []
+    trials, failed = [], []
     for name in names:
         done(name)
-        trials.append(add_effect(experiment, whiten, base, name))
+        trial = add_effect(experiment, whiten, base, name)
+        if _predicts(trial):
+            trials.append(trial)
+        else:
+            failed.append(name)
     models = [base, *trials]
-    rows = np.all([np.isfinite(m.fit.residual) for m in models if _predicts(m)], axis=0)
+    rows = np.all([np.isfinite(m.fit.residual) for m in models], axis=0)
     judge = judge_of(experiment, rows)
     linear = [Residuals(np.nan_to_num(m.fit.residual[rows]), m.fit.slopes[rows]) for m in models]
     white = np.array([float(((r.residual / judge.noise) ** 2).sum()) for r in linear])
@@ -60,7 +65,7 @@ def try_effects(
     squares = [judge.square(best, r) for r in linear]
     floor = float(rows.sum())
     evidence = _weigh(models, likelihood, squares, errors, floor)
-    return Round(base, tuple(trials), evidence, tuple(scatter), rows, judge, errors[0])
+    return Round(base, tuple(trials), evidence, tuple(scatter), rows, judge, errors[0], tuple(failed))
 
 
 def _predicts(model: Fitted) -> bool:
@@ -97,17 +102,16 @@ def _weigh(
     clear = misfit > 3.0 * np.sqrt(2.0 * floor)  # else there is nothing to explain
     out = []
     for k, model in enumerate(models[1:]):
-        usable = _predicts(model)
         out.append(
             Evidence(
                 name=model.model.effects[-1],
-                gain=gains[k] if usable else 0.0,
+                gain=gains[k],
                 unknowns=unknowns[k],
-                p_value=p_values[k] if usable else 1.0,
-                p_family=float(family[k]) if usable else 1.0,
-                share=min((squares[0] - squares[k + 1]) / misfit, 1.0) if usable and clear else 0.0,
-                cv_ratio=errors[k + 1] / errors[0] if usable else 1.0,
-                in_range=usable and _in_range(model),
+                p_value=p_values[k],
+                p_family=float(family[k]),
+                share=min((squares[0] - squares[k + 1]) / misfit, 1.0) if clear else 0.0,
+                cv_ratio=errors[k + 1] / errors[0],
+                in_range=_in_range(model),
             )
         )
     return tuple(out)
