@@ -23,6 +23,7 @@ LIBRARY = (
     "shear-stiffness",
     "locking",
     "shear-asymmetry",
+    "crossing-slip",
     "springback",
 )
 
