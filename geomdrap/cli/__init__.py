@@ -11,6 +11,7 @@ COMMANDS = {
     "drape": "Drape a part: net, shear map, flat pattern, statistics.",
     "check": "Say whether a mesh is fit for draping, and what is wrong with it.",
     "diff": "Say what changed between two results (for golden files in CI).",
+    "effects": "List the physical effects that can be added to a drape, or explain one.",
     "sample": "Write a sample part.",
 }
 

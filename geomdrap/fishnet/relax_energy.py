@@ -215,7 +215,7 @@ def derivatives(
                 for di in range(2):
                     for dj in range(2):
                         sign = 1.0 if di == dj else -1.0
-                        k, m = i + di, j + dj  # the corner, and its neighbours in the cell
-                        far_i, far_j = i + 1 - di, j + 1 - dj
-                        add_corner_terms(x, basis, g, h, size, k, m, far_i, far_j, sign, target[i, j, di, dj], law, full)
+                        k, m, far_k, far_m = i + di, j + dj, i + 1 - di, j + 1 - dj  # the corner, and those beside it
+                        aim = target[i, j, di, dj]
+                        add_corner_terms(x, basis, g, h, size, k, m, far_k, far_m, sign, aim, law, full)
     return g, h, size
