@@ -1,6 +1,8 @@
 """An effect of one's own: shrinkage of the fibres in the oven.
 
-Try it:  geomdrap drape samples/parts/hemisphere.stl --plugin samples/my_effect.py --effect oven-shrinkage:strain=0.004
+Try it, in one line:
+  geomdrap drape samples/parts/hemisphere.stl
+    --plugin samples/my_effect.py --effect oven-shrinkage:strain=0.004
 """
 
 from dataclasses import replace

@@ -25,7 +25,7 @@ WIDTH = 100
 def effects(name: str | None, plugins: tuple[Path, ...], folder: Path | None, as_json: bool) -> None:
     """List the effects, or explain the effect NAME: physics, equation, parameters, source.
 
-    With -o a picture shows how it moves the crossings of a double dome and changes their shear, at typical values
+    With -o a picture shows how it moves the crossings of a net on a bump and changes their shear, at typical values
     or at those of NAME:PARAMETER=VALUE,...
 
     \b
@@ -102,4 +102,5 @@ def _page(effect: type[Effect]) -> Iterator[str]:
             yield textwrap.fill(text, WIDTH, initial_indent=f"{label:<12}", subsequent_indent=" " * 12)
     for p in effect.parameters:
         unit = f" {p.unit}" if p.unit else ""
-        yield f"{_short(p)}: {p.text}; {p.low:g} to {p.high:g}{unit}, typical {p.typical:g}, no effect at {p.neutral:g}"
+        bounds = f"{p.low:g} to {p.high:g}{unit}, typical {p.typical:g}, no effect at {p.neutral:g}"
+        yield f"{_short(p)}: {p.text}; {bounds}"

@@ -132,7 +132,8 @@ def effect_options(function: F) -> F:
             "effect_texts",
             multiple=True,
             metavar="NAME:PARAMETER=VALUE,...",
-            help="An effect that acts, as in slip:coefficient=0.6; may be given more than once (see `geomdrap effects`).",
+            help="An effect that acts, as in slip:coefficient=0.6; may be given more than once "
+            "(see `geomdrap effects`).",
         ),
     ):
         function = option(function)

@@ -12,12 +12,12 @@ from geomdrap.fishnet.relax import pose, relax
 from geomdrap.fishnet.relax_energy import Law
 from geomdrap.fishnet.relax_net import as_net, chord_sines
 
-SLIDING = 0.02  # what a piece of a yarn resists changing its length by sliding, as a share of the shear
+SLIDING = 0.02  # what a piece resists changing its length by sliding, as a share of shear
 WHOLE_YARN = (1.0, 1e2, 1e4)  # what a whole yarn resists, raised step by step until it keeps its length
 
 
 class CrossingSlip(Effect):
-    """Part of the shear beyond an onset is relieved; the pieces of a yarn change their lengths, their sum does not."""
+    """Part of the shear beyond an onset is relieved; pieces of a yarn change their lengths, their sum does not."""
 
     name = "crossing-slip"
     summary = "Yarns slide at the crossings and relieve part of the shear; each keeps its total length."
@@ -26,9 +26,9 @@ class CrossingSlip(Effect):
         "side by sliding, γ* = γ0 − share·(|γ0| − onset)₊·sign γ0, γ0 the shear without slip"
     )
     physics = (
-        "Beyond some shear it is easier for yarns to slide at the crossings than to turn further. Crossings move along "
-        "their yarns to where the shear is less; their spacing becomes uneven, but no yarn gets longer, and shear is "
-        "below that of the pin-jointed net, the more the larger it is."
+        "Beyond some shear it is easier for yarns to slide at the crossings than to turn further. Crossings move "
+        "along their yarns to where the shear is less; their spacing becomes uneven, but no yarn gets longer, and "
+        "shear is below that of the pin-jointed net, the more the larger it is."
     )
     source = "slip share as found in bias-extension tests by J. Cao et al., Composites A 39 (2008), fig. 36"
     stage = "net"

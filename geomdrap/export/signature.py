@@ -10,13 +10,18 @@ import numpy as np
 if TYPE_CHECKING:
     from geomdrap.fishnet import Effect, Net
 
-PITCH = 10.0
-LONGEST = 3.0  # pitches: what the longest arrow is drawn as
-SEED, HEADING = (20.0, 8.0, 60.0), 20.0  # off the symmetry of the sample, on which several effects would not show
+PITCH = 8.0
+LONGEST = 2.5  # pitches: what the longest arrow is drawn as
+HALF, HEIGHT, WIDTH = (
+    120.0,
+    60.0,
+    45.0,
+)  # mm: half a side of the sample, and of its bump the height and standard width
+SEED, HEADING = (12.0, 6.0, 57.0), 15.0  # off the symmetry of the sample, on which several effects would not show
 
 
 def write_signature(effect: Effect, folder: Path) -> Path:
-    """Draw how an effect moves the crossings of a double dome and changes their shear; the file."""
+    """Draw how an effect moves the crossings of a net on a bump and changes their shear; the file."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -42,7 +47,8 @@ def _nets(effect: Effect) -> tuple[Net, Net]:
     from geomdrap.fishnet import drape
     from geomdrap.surface import shapes
 
-    part = shapes.double_dome()
+    lines = np.linspace(-HALF, HALF, 81)
+    part = shapes.grid_surface(lambda x, y: HEIGHT * np.exp(-0.5 * (x**2 + y**2) / WIDTH**2), lines, lines)
     plain, changed = (drape(part, SEED, HEADING, PITCH, effects=e, project=True) for e in ([], [effect]))
     return plain, changed
 
@@ -59,7 +65,8 @@ def _arrows(axes: Any, net: Net, moved: np.ndarray) -> None:
         x, y, scale * moved[..., 0], scale * moved[..., 1], length, cmap="viridis", angles="xy", scale_units="xy",
         scale=1.0, width=0.0022, zorder=2,
     )  # fmt: skip
-    axes.set_title(f"crossings move by up to {most:.3g} mm (arrows × {scale:.3g})" if most > 1e-6 else "no crossing moves")
+    words = f"crossings move by up to {most:.3g} mm (arrows × {scale:.3g})"
+    axes.set_title(words if most > 1e-6 else "no crossing moves")
     axes.set_xlabel("x [mm]")
     axes.set_ylabel("y [mm]")
     axes.set_aspect("equal")

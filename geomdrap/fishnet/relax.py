@@ -43,8 +43,8 @@ ROUNDS = 80
 class Problem:
     """What is held fixed while a net relaxes; arrays as in ``relax_energy``.
 
-    ``x0`` (nu, nv, 3) is the geometric net, ``number`` (nu, nv) of the nodes that move, -1 for others; ``fixed`` node and ``guided`` node, which moves only in
-    the plane through the seed across ``side``.
+    ``x0`` (nu, nv, 3) is the geometric net, ``number`` (nu, nv) of the nodes that move, -1 for others; ``fixed`` node
+    and ``guided`` node, which moves only in the plane through the seed across ``side``.
     """
 
     surface: Surface
@@ -65,8 +65,8 @@ class Problem:
 class Relaxed:
     """Where nodes have come to rest.
 
-    ``x`` (nu, nv, 3) mm, ``footing`` of the n that move, ``energy``, and ``unrest``: the largest tangential force that
-    is left at a node over the largest sum of forces at a node.
+    ``x`` (nu, nv, 3) mm, ``footing`` of the n that move, ``energy``, and ``unrest``: the largest tangential force
+    that is left at a node over the largest sum of forces at a node.
     """
 
     x: np.ndarray
@@ -101,7 +101,7 @@ def relaxed(net: Net, start: np.ndarray | None = None) -> Net:
 
 
 def pose(net: Net, law: Law) -> Problem:
-    """The problem of relaxing a geometric net under a law. Raises DrapeError where the seed has no cells around it."""
+    """The problem of relaxing a net under a law. Raises DrapeError where the seed has no cell beside it."""
     lattice, valid = net.lattice, net.lattice_valid
     moves = np.zeros(net.face.shape, bool)
     for corner in (np.s_[:-1, :-1], np.s_[1:, :-1], np.s_[1:, 1:], np.s_[:-1, 1:]):
@@ -176,7 +176,8 @@ def _energy(problem: Problem, x: np.ndarray) -> float:
 class Equations:
     """Newton's equations.
 
-    ``gradient`` (2n,) and ``matrix`` (2n, 2n) along the tangent vectors ``bases`` (n, 3, 2); ``unrest`` as in ``Relaxed``; ``yarns`` (k, 2n) changes of the strain sums of k yarns that keep their length.
+    ``gradient`` (2n,) and ``matrix`` (2n, 2n) along the tangent vectors ``bases`` (n, 3, 2); ``unrest`` as in
+    ``Relaxed``; ``yarns`` (k, 2n) changes of the strain sums of k yarns that keep their length.
     """
 
     gradient: np.ndarray
@@ -230,7 +231,9 @@ def _yarn_lengths(problem: Problem, x: np.ndarray, bases: np.ndarray) -> csc_arr
         rows.append(np.repeat(yarn, 2))
         values.append(np.einsum("nxa,nx->na", bases, pull[moves]).ravel())
     columns = np.tile(np.arange(2 * len(bases)), 2)
-    return csc_array((np.concatenate(values), (np.concatenate(rows), columns)), shape=(sum(moves.shape), 2 * len(bases)))
+    return csc_array(
+        (np.concatenate(values), (np.concatenate(rows), columns)), shape=(sum(moves.shape), 2 * len(bases))
+    )
 
 
 def _bases(problem: Problem, footing: Footing) -> np.ndarray:

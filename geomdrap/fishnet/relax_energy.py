@@ -2,8 +2,9 @@
 
 E = piece·Σ e² over yarn pieces + yarn·Σ (Σ e)² over whole yarns + Σ W(s) over corners of cells, with the strain
 e = l/c − 1 of a piece, s = sin γ at a corner less a target, and W = ratio/4·(1 ± alpha)·s² + lock/4·(|s| − s_lock)²₊.
-Usually piece = 1, and yarn and targets are 0; the other way round yarns slide at their crossings. Lengths and angles are those of the straight lines between nodes; c
-is the length of that line in the geometric net, so that what a chord cuts short of a curved yarn counts nowhere.
+Usually piece = 1, and yarn and targets are 0; the other way round yarns slide at their crossings. Lengths and angles
+are those of the straight lines between nodes; c is the length of that line in the geometric net, so that what a chord
+cuts short of a curved yarn counts nowhere.
 """
 
 from __future__ import annotations
@@ -57,7 +58,8 @@ def shear_energy(law: Law, s: float) -> tuple[float, float, float]:
 def energy(
     x: np.ndarray, valid: np.ndarray, target: np.ndarray, rest_u: np.ndarray, rest_v: np.ndarray, law: Law
 ) -> float:
-    """Energy of nodes x (nu, nv, 3) in the cells ``valid`` (nu - 1, nv - 1) with sines ``target`` (nu - 1, nv - 1, 2, 2).
+    """Energy of nodes x (nu, nv, 3) in the cells ``valid`` (nu - 1, nv - 1) with sines ``target`` (nu - 1, nv - 1, 2,
+    2).
 
     ``rest_u`` (nu - 1, nv), ``rest_v`` (nu, nv - 1): lengths c of the pieces, mm, 0 where there is none.
     """
@@ -194,8 +196,9 @@ def derivatives(
     """Gradient (nu, nv, 3), second derivative (nu, nv, 3, 3, 2, 2) and size of the forces (nu, nv).
 
     The second derivative is that along the tangent vectors ``basis`` (nu, nv, 3, 2) of a node and of its eight
-    neighbours, without the part of the surface's curvature and that of whole yarns; where not ``full`` it is made positive by leaving out what
-    may be negative. The size is the sum of the forces at a node without regard to their directions.
+    neighbours, without the part of the surface's curvature and that of whole yarns; where not ``full`` it is made
+    positive by leaving out what may be negative. The size is the sum of the forces at a node without regard to their
+    directions.
     """
     nu, nv = x.shape[0], x.shape[1]
     g = np.zeros((nu, nv, 3))

@@ -65,8 +65,8 @@ def _doubts(net: Net, found: Relaxed) -> tuple[str, ...]:
     if found.unrest <= GOOD_ENOUGH:
         return ()
     return (
-        f"the net of {net.surface.source} has not come to rest (forces out of balance by {found.unrest:.1g}): the part "
-        "has sharp edges, or the fabric locks; use a finer mesh, another pitch, or a smaller blank and compare",
+        f"the net of {net.surface.source} has not come to rest (forces out of balance by {found.unrest:.1g}): the "
+        "part has sharp edges, or the fabric locks; use a finer mesh, another pitch, or a smaller blank and compare",
     )
 
 
