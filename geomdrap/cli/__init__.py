@@ -14,6 +14,7 @@ COMMANDS = {
     "improve": "Add missing effects to a drape until it agrees with measured points.",
     "check": "Say whether a mesh is fit for draping, and what is wrong with it.",
     "diff": "Say what changed between two results (for golden files in CI).",
+    "effects": "List the physical effects that can be added to a drape, or explain one.",
     "sample": "Write a sample part.",
 }
 

@@ -11,6 +11,7 @@ from click.core import ParameterSource
 
 from geomdrap.cli.options import (
     cloth_options,
+    effect_options,
     folder_option,
     json_option,
     outputs_option,
@@ -23,12 +24,14 @@ from geomdrap.cli.options import (
 if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
     from geomdrap.fields import Drape
+    from geomdrap.fishnet import Effect
 
 
 @click.command()
 @part_argument
 @seed_options
 @cloth_options
+@effect_options
 @reading_options
 @folder_option("drape", "Folder for the result files; it is made if it is missing.")
 @outputs_option
@@ -48,6 +51,7 @@ def drape(
       geomdrap drape hood.stl
       geomdrap drape hemisphere.stl --origin -5,5,84.4 --angle 45 --pitch 4 -o hemisphere-45
       geomdrap drape hood.stl --origin vertex:120 --blank 800x600 --outputs json,dxf --json
+      geomdrap drape hood.stl --effect slip:coefficient=0.6 --effect thickness:offset=1.5
     """
     from geomdrap.cli.messages import print_json, say
     from geomdrap.cli.progress import Progress, announce_compilation
@@ -99,17 +103,32 @@ def compute(
     flip: bool,
     blank: tuple[float, float] | None,
     limit_angle: float | None,
+    effect_texts: tuple[str, ...] = (),
+    model: Path | None = None,
+    plugins: tuple[Path, ...] = (),
     **drape_options: Any,
 ) -> Drape:
     """Read, drape and evaluate; ``drape_options`` go to `geomdrap.drape` as they are."""
     import geomdrap as gd
 
+    effects = effects_of(effect_texts, model, plugins)
     progress.step("Reading")
     surface = gd.read_surface(part, unit=unit, tolerance=tolerance, flip=flip)
     before_drape()
     progress.step("Draping")
     reach = (blank[0] / 2, blank[1] / 2) if blank else None
-    net = gd.drape(surface, reach=reach, **drape_options)
+    net = gd.drape(surface, reach=reach, effects=effects, **drape_options)
     progress.step("Evaluating")
     result: Drape = gd.evaluate(net, limit_angle)
     return result
+
+
+def effects_of(texts: tuple[str, ...], model: Path | None, plugins: tuple[Path, ...]) -> list[Effect]:
+    """The effects of a model file and of the command line; plugins first, so that both may name theirs."""
+    if not (texts or model or plugins):
+        return []
+    from geomdrap import effects
+
+    for plugin in plugins:
+        effects.load_plugin(plugin)
+    return [*(effects.read_model(model) if model else ()), *map(effects.parse, texts)]

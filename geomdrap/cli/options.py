@@ -105,6 +105,41 @@ def cloth_options(function: F) -> F:
     return function
 
 
+def plugin_option(function: F) -> F:
+    """Add --plugin FILE.py, effects of the user's own."""
+    return click.option(
+        "--plugin",
+        "plugins",
+        type=_path(),
+        multiple=True,
+        metavar="FILE.py",
+        help="Python file with effects of your own; may be given more than once.",
+    )(function)
+
+
+def effect_options(function: F) -> F:
+    """Add the effects: --effect, --model, --plugin."""
+    for option in (
+        plugin_option,
+        click.option(
+            "--model",
+            type=_path(),
+            metavar="FILE.toml",
+            help="Model file with effects and their values, as `improve` writes it.",
+        ),
+        click.option(
+            "--effect",
+            "effect_texts",
+            multiple=True,
+            metavar="NAME:PARAMETER=VALUE,...",
+            help="An effect that acts, as in slip:coefficient=0.6; may be given more than once "
+            "(see `geomdrap effects`).",
+        ),
+    ):
+        function = option(function)
+    return function
+
+
 def folder_option(default: str | None, text: str) -> Callable[[F], F]:
     """Add -o/--output DIR."""
     return click.option(

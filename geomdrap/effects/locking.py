@@ -14,9 +14,9 @@ class Locking(Effect):
     summary = "Shear stops near an angle at which the yarns touch, at the cost of yarn length."
     equation = "min Σ (l/l0 − 1)² + ratio·Σ sin²γ/4 + Σ (|sin γ| − sin angle)²₊/4, the last two over corners"
     physics = (
-        "Yarns turn at the crossings until they lie side by side; from there on they would have to be squeezed. Shear "
-        "stops near that angle, neighbouring cells shear more, yarns stretch or slide, and finally the ply wrinkles, "
-        "which a net on the tool does not show. Where the geometric net stays below the angle it says nothing."
+        "Yarns turn at the crossings until they lie side by side; from there on they would have to be squeezed. "
+        "Shear stops near that angle, neighbouring cells shear more, yarns stretch or slide, and finally the ply "
+        "wrinkles, which a net on the tool does not show. Where the geometric net stays below the angle it says nothing."
     )
     source = "locking after P. Boisse et al., Composites Sci. Tech. 71 (2011); penalty as stiff as the yarns"
     stage = "fabric"

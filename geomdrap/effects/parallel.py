@@ -12,8 +12,8 @@ from geomdrap.errors import EffectError
 if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
-# Facets whose normals differ by less than SMOOTH degrees stand for a curved surface, on which a vertex moves along its
-# normal; beyond SHARP they are planes that meet in an edge, and the vertex moves to where their offsets meet.
+# Facets whose normals differ by less than SMOOTH degrees stand for a curved surface, on which a vertex moves along
+# its normal; beyond SHARP they are planes that meet in an edge, and the vertex moves to where their offsets meet.
 SMOOTH, SHARP = 20.0, 40.0
 MITRE = 3.0  # times the distance: a vertex of a spike moves no further
 
@@ -28,8 +28,8 @@ def parallel_surface(surface: Surface, offset: float, effect: str) -> Surface:
     if turned.any() or not np.isfinite(moved.normals).all():
         where = surface.points[surface.triangles[int(np.argmax(turned))]].mean(axis=0)
         raise EffectError(
-            f"effect {effect}: at {_place(where)} {surface.source} is curved more tightly than {offset:g} mm, so that "
-            "no ply fits in; use a smaller offset, or bridging with a radius of at least the offset as well"
+            f"effect {effect}: at {_place(where)} {surface.source} is curved more tightly than {offset:g} mm, so "
+            "that no ply fits in; use a smaller offset, or bridging with a radius of at least the offset as well"
         )
     return moved
 

@@ -23,6 +23,7 @@ LIBRARY = (
     "shear-stiffness",
     "locking",
     "shear-asymmetry",
+    "crossing-slip",
     "springback",
 )
 
@@ -47,7 +48,9 @@ def _installed() -> dict[str, type[Effect]]:
         try:
             effect = point.load()
         except Exception as error:  # another package's code may raise anything
-            raise EffectError(f"effect {point.name} of {point.value} does not load ({error}); repair or remove it") from error
+            raise EffectError(
+                f"effect {point.name} of {point.value} does not load ({error}); repair or remove it"
+            ) from error
         _check(effect, point.value, found)
         found[effect.name] = effect
     return found
@@ -106,6 +109,8 @@ def parse(text: str) -> Effect:
         except ValueError:
             equals = ""
         if not equals or key in values or "_" in number:
-            raise EffectError(f"effect {text!r}: {item!r} is not PARAMETER=NUMBER, each once, as in slip:coefficient=0.6")
+            raise EffectError(
+                f"effect {text!r}: {item!r} is not PARAMETER=NUMBER, each once, as in slip:coefficient=0.6"
+            )
         values[key] = value
     return make(name.strip(), **values)

@@ -1,17 +1,17 @@
 """The closing of a tool by a ball: what is left of it when a ball of given radius rolls over it and fills the rest.
 
-The ball's centre c keeps the radius r from every point of the tool. A point p of the tool that no such ball touches is
-lifted: with c the nearest allowed centre, p moves to c + r·(p − c)/|p − c|. That point lies on the closed surface,
+The ball's centre c keeps the radius r from every point of the tool. A point p of the tool that no such ball touches
+is lifted: with c the nearest allowed centre, p moves to c + r·(p − c)/|p − c|. That point lies on the closed surface,
 since any other allowed centre is at least r away from it.
 
-The nearest centre is found by exchange: from an allowed centre, the region is cut down by one tool point after the
-other, each time the one nearest to the centre that would be best so far, until that one keeps its distance and becomes
-the new centre. Every tool point is a true constraint, made convex by the half-space that it leaves as seen from the
-allowed centre, so that each centre is better than the one before. The start, the nearest of the allowed centres above
-the facets, picks the right side of a narrow channel.
+The nearest centre is found by exchange: from an allowed centre, the region is cut down by one tool point after
+the other, each time the one nearest to the centre that would be best so far, until that one keeps its distance and
+becomes the new centre. Every tool point is a true constraint, made convex by the half-space that it leaves as seen
+from the allowed centre, so that each centre is better than the one before. The start, the nearest of the allowed
+centres above the facets, picks the right side of a narrow channel.
 
-Source: closing by a ball, J. Serra, Image Analysis and Mathematical Morphology (1982); exchange methods of semi-infinite
-programming, R. Hettich and K. Kortanek, SIAM Review 35 (1993).
+Source: closing by a ball, J. Serra, Image Analysis and Mathematical Morphology (1982); exchange methods of
+semi-infinite programming, R. Hettich and K. Kortanek, SIAM Review 35 (1993).
 """
 
 from __future__ import annotations
@@ -98,8 +98,8 @@ def _allowed_centres(
 def _least_cosine(surface: Surface) -> np.ndarray:
     """Cosine (n,) of the vertex normal to the facet there that differs most; 1 where facets meet in an edge.
 
-    On facets that stand for a hollow of a larger radius, a ball on a vertex cuts the facets beside it by that much; it
-    does not cut the hollow.
+    On facets that stand for a hollow of a larger radius, a ball on a vertex cuts the facets beside it by that much;
+    it does not cut the hollow.
     """
     facing = np.einsum("fkx,fx->fk", surface.vertex_normals[surface.triangles], surface.normals)
     least = np.ones(len(surface.points))

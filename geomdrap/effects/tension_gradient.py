@@ -14,10 +14,12 @@ class TensionGradient(Effect):
 
     name = "tension-gradient"
     summary = "Yarns are stretched the more, the further they lie from the seed."
-    equation = "side along warp = pitch·(1 + k_warp·|u|), along weft = pitch·(1 + k_weft·|v|), u, v of its middle in m"
+    equation = (
+        "side along warp = pitch·(1 + k_warp·|u|), along weft = pitch·(1 + k_weft·|v|), u, v of its middle in m"
+    )
     physics = (
-        "A blank holder pulls at the ends of the yarns, and friction on the tool takes the tension away towards the "
-        "middle (or the reverse, where yarns are held in the middle: k < 0). Yarns stretch with the tension."
+        "A blank holder pulls at the ends of the yarns, and friction on the tool takes the tension away towards "
+        "the middle (or the reverse, where yarns are held in the middle: k < 0). Yarns stretch with the tension."
     )
     source = "capstan friction, to first order; extensible net"
     stage = "fabric"

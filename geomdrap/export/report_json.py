@@ -39,6 +39,7 @@ def as_dict(result: Drape, files: Mapping[str, str | Path] | None = None) -> dic
             "normal": net.normal0,
             "angle": net.angle,
             "pitch": net.pitch,
+            "effects": [{"name": e.title(), "values": getattr(e, "values", {})} for e in net.effects],
             "nodes": int(np.isfinite(net.points[..., 0]).sum()),
             "cells": int(np.sum(net.cell_valid)),
             "shear": _fields(result.statistics, "max", "p95", "mean"),

@@ -122,7 +122,7 @@ def _march_sliding(mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, 
 def _march(
     mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric, axis: np.ndarray | float
 ) -> Grid:
-    """Seed, generators (α-nodes), cells (β-nodes), and the front carried on; ``axis``: strains of the weft generator."""
+    """Seed, generators (α-nodes), cells (β-nodes), front carried on; ``axis``: strains of the weft generator."""
     grid = empty_grid(*sides(extent, pitch, fabric), APART)
     i0, j0 = extent.west, extent.south
     grid.node[i0, :, STRAIN] = axis

@@ -88,7 +88,9 @@ def in_order(effects: Sequence[Effect]) -> tuple[Effect, ...]:
     """
     for effect in effects:
         if not isinstance(effect, Effect):
-            raise EffectError(f"effects must be objects such as gd.effects.make('slip', coefficient=0.6), not {effect!r}")
+            raise EffectError(
+                f"effects must be objects such as gd.effects.make('slip', coefficient=0.6), not {effect!r}"
+            )
     return tuple(sorted((e for e in effects if not e.is_neutral), key=lambda e: e.rank))
 
 

@@ -49,12 +49,12 @@ class Grid(NamedTuple):
 
     ``face`` holds the face number + 1 (0: no node). ``node`` (nu, nv, 11) holds the point in the frame of that face
     and the unit directions of the yarns there, each (x, y): see the column numbers below; *out* is how a yarn leaves
-    the node toward +u (+v), *in* how it arrives; and the strain of its weft piece to j + 1. ``marks`` (nu, nv, 3) holds the status; the pieces that exist (bit
-    1: warp to i + 1, bit 2: weft to j + 1); and a bit per sense of march in which the node's cell was attempted.
-    ``sides_u`` (nu - 1,) and ``sides_v`` (nv - 1,) are the lengths of the cell sides, mm. ``bucket`` and
-    ``following`` are the spatial hash in which the net looks for itself (links are (i << 32 | j) + 1); ``box``
-    holds the least and greatest i, then j, of the nodes, and the spread of one sheet (see ``place``). Few arrays,
-    because each costs time at every call of a kernel.
+    the node toward +u (+v), *in* how it arrives; and the strain of its weft piece to j + 1. ``marks`` (nu, nv, 3)
+    holds the status; the pieces that exist (bit 1: warp to i + 1, bit 2: weft to j + 1); and a bit per sense of march
+    in which the node's cell was attempted. ``sides_u`` (nu - 1,) and ``sides_v`` (nv - 1,) are the lengths of the
+    cell sides, mm. ``bucket`` and ``following`` are the spatial hash in which the net looks for itself (links are (i
+    << 32 | j) + 1); ``box`` holds the least and greatest i, then j, of the nodes, and the spread of one sheet (see
+    ``place``). Few arrays, because each costs time at every call of a kernel.
     """
 
     face: np.ndarray

@@ -9,14 +9,12 @@ the surface vanish against those that balance each other.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from geomdrap.errors import DrapeError
-from geomdrap.fishnet.grid import Status
-from geomdrap.fishnet.net import cells_of
 from geomdrap.fishnet.relax_energy import Law, derivatives, energy
 from geomdrap.fishnet.relax_surface import Footing, smooth_normals, stand, tangents
 
@@ -31,7 +29,7 @@ DEFAULT_RATIO = 0.003  # shear stiffness where only its asymmetry is given
 SOFT_RATIO = 1e-6  # shear stiffness where only a locking angle is given
 LOCK_STIFFNESS = 1.0  # of the yarns: resistance to shear beyond the locking angle
 BALANCED = 1e-6  # of the largest forces at a node: what may be left of them
-GOOD_ENOUGH = 1e-3  # beyond, the net is refused
+GOOD_ENOUGH = 1e-3  # beyond, a warning is given
 LONGEST_STEP = 1.5  # pieces
 LEAST_DAMPING, MOST_DAMPING = 1e-10, 10.0  # of the largest stiffness
 ROUNDING = 1e-12
@@ -45,13 +43,14 @@ ROUNDS = 80
 class Problem:
     """What is held fixed while a net relaxes; arrays as in ``relax_energy``.
 
-    ``x0`` (nu, nv, 3) is the geometric net, ``number`` (nu, nv) of the nodes that move, -1 for others; ``fixed`` node and ``guided`` node, which moves only in
-    the plane through the seed across ``side``.
+    ``x0`` (nu, nv, 3) is the geometric net, ``number`` (nu, nv) of the nodes that move, -1 for others; ``fixed`` node
+    and ``guided`` node, which moves only in the plane through the seed across ``side``.
     """
 
     surface: Surface
     corner_normals: np.ndarray
     valid: np.ndarray
+    target: np.ndarray
     x0: np.ndarray
     rest_u: np.ndarray
     rest_v: np.ndarray
@@ -64,9 +63,10 @@ class Problem:
 
 @dataclass(frozen=True, eq=False)
 class Relaxed:
-    """Where nodes have come to rest: ``x`` (nu, nv, 3) mm, ``footing`` of the n that move, energy, and ``unrest``:
+    """Where nodes have come to rest.
 
-    the largest tangential force that is left at a node over the largest sum of forces at a node.
+    ``x`` (nu, nv, 3) mm, ``footing`` of the n that move, ``energy``, and ``unrest``: the largest tangential force
+    that is left at a node over the largest sum of forces at a node.
     """
 
     x: np.ndarray
@@ -92,20 +92,16 @@ def law_of(fabric: Fabric) -> Law:
 def relaxed(net: Net, start: np.ndarray | None = None) -> Net:
     """The net of least energy of ``net.fabric``, from the geometric net or from nodes ``start`` (nu, nv, 3) mm.
 
-    Raises DrapeError where the forces do not come into balance.
+    A warning of the net says so where the forces do not come into balance.
     """
-    problem = pose(net)
-    found = relax(problem, net.lattice if start is None else start)
-    if not found.unrest <= GOOD_ENOUGH:
-        raise DrapeError(
-            f"the net of {net.surface.source} does not come to rest (forces out of balance by {found.unrest:.1g}): "
-            "the part has edges or shears too far; use a finer mesh, another pitch, or a smaller blank"
-        )
-    return as_net(net, problem, found)
+    from geomdrap.fishnet.relax_net import as_net
+
+    problem = pose(net, law_of(net.fabric))
+    return as_net(net, problem, relax(problem, net.lattice if start is None else start))
 
 
-def pose(net: Net) -> Problem:
-    """The problem of relaxing a geometric net. Raises DrapeError where the seed has no cells around it."""
+def pose(net: Net, law: Law) -> Problem:
+    """The problem of relaxing a net under a law. Raises DrapeError where the seed has no cell beside it."""
     lattice, valid = net.lattice, net.lattice_valid
     moves = np.zeros(net.face.shape, bool)
     for corner in (np.s_[:-1, :-1], np.s_[1:, :-1], np.s_[1:, 1:], np.s_[:-1, 1:]):
@@ -129,10 +125,11 @@ def pose(net: Net) -> Problem:
         surface=surface,
         corner_normals=normals,
         valid=valid,
+        target=np.zeros((*valid.shape, 2, 2)),
         x0=x,
         rest_u=np.where(warp, np.linalg.norm(np.diff(x, axis=0), axis=2), 0.0),
         rest_v=np.where(weft, np.linalg.norm(np.diff(x, axis=1), axis=2), 0.0),
-        law=law_of(net.fabric),
+        law=law,
         number=number,
         fixed=(i, j),
         guided=(beside[0], j),
@@ -158,7 +155,7 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
             best = Relaxed(x, footing, now, equations.unrest, n)
         if best.unrest < BALANCED or (best.unrest < GOOD_ENOUGH and stuck > PATIENCE):
             break
-        step = _solve(equations, damping)
+        step = _solve(problem, equations, damping)
         moved = _searched(problem, x, footing, equations, step, now) if equations.gradient @ step < 0.0 else None
         if moved is None and damping > MOST_DAMPING:
             break
@@ -172,20 +169,22 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
 
 
 def _energy(problem: Problem, x: np.ndarray) -> float:
-    return float(energy(x, problem.valid, problem.rest_u, problem.rest_v, problem.law))
+    return float(energy(x, problem.valid, problem.target, problem.rest_u, problem.rest_v, problem.law))
 
 
 @dataclass(frozen=True, eq=False)
 class Equations:
-    """Newton's equations: ``gradient`` (2n,), ``matrix`` (2n, 2n) along the tangent vectors ``bases`` (n, 3, 2), and
+    """Newton's equations.
 
-    ``unrest`` as in ``Relaxed``.
+    ``gradient`` (2n,) and ``matrix`` (2n, 2n) along the tangent vectors ``bases`` (n, 3, 2); ``unrest`` as in
+    ``Relaxed``; ``yarns`` (k, 2n) changes of the strain sums of k yarns that keep their length.
     """
 
     gradient: np.ndarray
     matrix: csc_array
     bases: np.ndarray
     unrest: float
+    yarns: csc_array | None
 
 
 def _equations(problem: Problem, x: np.ndarray, footing: Footing, full: bool) -> Equations:
@@ -196,7 +195,9 @@ def _equations(problem: Problem, x: np.ndarray, footing: Footing, full: bool) ->
     bases = _bases(problem, footing)
     basis = np.zeros((*moves.shape, 3, 2))
     basis[moves] = bases
-    g, h, size = derivatives(x, basis, problem.valid, problem.rest_u, problem.rest_v, problem.law, full)
+    g, h, size = derivatives(
+        x, basis, problem.valid, problem.target, problem.rest_u, problem.rest_v, problem.law, full
+    )
     gradient = np.einsum("nxa,nx->na", bases, g[moves]).ravel()
     bending = np.einsum("nxa,nxy,nyb->nab", bases, footing.turning, bases)
     if full:
@@ -208,7 +209,31 @@ def _equations(problem: Problem, x: np.ndarray, footing: Footing, full: bool) ->
         rows, columns, values = np.append(rows, at), np.append(columns, at), np.append(values, np.full(len(at), 1.0))
     n = 2 * len(bases)
     left = float(np.linalg.norm(gradient.reshape(-1, 2), axis=1).max())
-    return Equations(gradient, csc_array((values, (rows, columns)), shape=(n, n)), bases, left / float(size.max()))
+    matrix = csc_array((values, (rows, columns)), shape=(n, n))
+    yarns = _yarn_lengths(problem, x, bases) if problem.law.yarn > 0.0 else None
+    return Equations(gradient, matrix, bases, left / max(float(size.max()), 1e-300), yarns)
+
+
+def _yarn_lengths(problem: Problem, x: np.ndarray, bases: np.ndarray) -> csc_array:
+    """How the sum of strains of each warp and weft yarn (nv + nu, 2n) changes as the nodes move."""
+    from scipy.sparse import csc_array
+
+    moves = problem.number >= 0
+    i, j = np.nonzero(moves)
+    rows, values = [], []
+    for axis, rest, yarn in ((0, problem.rest_u, j), (1, problem.rest_v, len(moves[0]) + i)):
+        piece = np.diff(x, axis=axis)
+        length = np.linalg.norm(piece, axis=2)
+        slope = np.where(rest > 0.0, 1.0 / np.where(rest > 0.0, rest * length, 1.0), 0.0)[..., None] * piece
+        pull = np.zeros(x.shape)
+        pull[(np.s_[1:], np.s_[:, 1:])[axis]] += slope
+        pull[(np.s_[:-1], np.s_[:, :-1])[axis]] -= slope
+        rows.append(np.repeat(yarn, 2))
+        values.append(np.einsum("nxa,nx->na", bases, pull[moves]).ravel())
+    columns = np.tile(np.arange(2 * len(bases)), 2)
+    return csc_array(
+        (np.concatenate(values), (np.concatenate(rows), columns)), shape=(sum(moves.shape), 2 * len(bases))
+    )
 
 
 def _bases(problem: Problem, footing: Footing) -> np.ndarray:
@@ -239,16 +264,21 @@ def _entries(number: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, np.ndarray,
     return np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
 
 
-def _solve(equations: Equations, damping: float) -> np.ndarray:
-    """Damped Newton step (2n,)."""
-    from scipy.sparse import diags_array
+def _solve(problem: Problem, equations: Equations, damping: float) -> np.ndarray:
+    """Damped Newton step (2n,); the stiffness of whole yarns stands in rows of its own, since it is dense."""
+    from scipy.sparse import block_array, diags_array
     from scipy.sparse.linalg import splu
 
-    matrix, gradient = equations.matrix, equations.gradient
+    matrix, gradient, yarns = equations.matrix, equations.gradient, equations.yarns
     shift = (damping + 1e-13) * max(float(matrix.diagonal().max()), 1e-300)
-    damped = (matrix + diags_array(np.full(len(gradient), shift))).tocsc()
-    factors = splu(damped, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    step: np.ndarray = -factors.solve(gradient)
+    system = (matrix + diags_array(np.full(len(gradient), shift))).tocsc()
+    if yarns is not None:
+        soft = diags_array(np.full(yarns.shape[0], -0.5 / problem.law.yarn))
+        system = block_array([[system, yarns.T], [yarns, soft]], format="csc")
+    factors = splu(system, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    right = np.zeros(system.shape[0])
+    right[: len(gradient)] = -gradient
+    step: np.ndarray = factors.solve(right)[: len(gradient)]
     return step
 
 
@@ -277,76 +307,3 @@ def _searched(
             return y, moved, then, whole
         share, whole = 0.25 * share, False
     return None
-
-
-def as_net(net: Net, problem: Problem, found: Relaxed) -> Net:
-    """The net with its nodes where they came to rest; those that came to lie beyond the rim are off the part."""
-    moves = problem.number >= 0
-    off = np.ones(moves.shape, bool)
-    off[moves] = found.footing.outside > 1e-9 * net.pitch
-    lattice = np.full(found.x.shape, np.nan)
-    lattice[moves] = found.footing.point
-    lattice[off] = np.nan
-    face = np.full(moves.shape, -1)
-    face[moves] = found.footing.face
-    face[off | (face >= len(net.surface.triangles))] = -1
-    face[~np.isfinite(net.points[..., 0])] = -1  # in a hole
-    points = np.where(face[..., None] < 0, np.nan, lattice)
-    status = net.status_around.copy()
-    status[1:-1, 1:-1][np.isfinite(net.lattice[..., 0]) & off] = Status.OFF_PART
-    lattice_valid = net.lattice_valid & np.isfinite(cells_of(lattice[..., 0])).all(axis=0)
-    cell_valid = net.cell_valid & np.isfinite(cells_of(points[..., 0])).all(axis=0)
-    cells, nodes = (a - b for a, b in zip(chord_shears(found.x, net.lattice_valid), chord_shears(problem.x0, net.lattice_valid), strict=True))
-    stretch_u = np.linalg.norm(np.diff(found.x, axis=0), axis=2) / np.where(problem.rest_u > 0, problem.rest_u, np.nan)
-    stretch_v = np.linalg.norm(np.diff(found.x, axis=1), axis=2) / np.where(problem.rest_v > 0, problem.rest_v, np.nan)
-    long, wide = net.sides or (np.diff(net.u)[:, None], np.diff(net.v)[None, :])
-    return replace(
-        net,
-        points=points,
-        face=face.astype(net.face.dtype),
-        status_around=status,
-        lattice=lattice,
-        lattice_valid=lattice_valid,
-        cell_valid=cell_valid,
-        cell_shear=np.where(cell_valid, net.cell_shear + cells, np.nan),
-        shear=np.where(np.isfinite(points[..., 0]), net.shear + nodes, np.nan),
-        yarns=_yarns(lattice, found, moves),
-        sides=(long * stretch_u, wide * stretch_v),
-        notes=(*net.notes, f"net of least energy, forces balanced to {found.unrest:.0e} in {found.rounds} rounds"),
-    )
-
-
-def chord_shears(x: np.ndarray, valid: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Shear of cells (nu - 1, nv - 1) and at nodes (nu, nv), degrees, from the straight lines between nodes."""
-    total, count = np.zeros(x.shape[:2]), np.zeros(x.shape[:2])
-    sines = np.zeros(valid.shape)
-    p = cells_of(x)
-    for k, corner in enumerate((np.s_[:-1, :-1], np.s_[1:, :-1], np.s_[1:, 1:], np.s_[:-1, 1:])):
-        beside_u, beside_v = (p[(1, 0, 3, 2)[k]] - p[k]), (p[(3, 2, 1, 0)[k]] - p[k])
-        size = np.linalg.norm(beside_u, axis=2) * np.linalg.norm(beside_v, axis=2)
-        cosine = (beside_u * beside_v).sum(axis=2) / np.where(valid, size, 1.0)
-        sine = np.where(valid, (-1) ** k * np.clip(cosine, -1.0, 1.0), 0.0)
-        sines += 0.25 * sine
-        total[corner] += np.degrees(np.arcsin(sine))
-        count[corner] += valid
-    cells = np.where(valid, np.degrees(np.arcsin(np.clip(sines, -1.0, 1.0))), np.nan)
-    return cells, np.where(count > 0, total / np.maximum(count, 1), np.nan)
-
-
-def _yarns(lattice: np.ndarray, found: Relaxed, moves: np.ndarray) -> np.ndarray:
-    """Unit directions of warp and weft (2, nu, nv, 3) in the tangent plane: the mean of both pieces at a node."""
-    normal = np.zeros(lattice.shape)
-    normal[moves] = found.footing.normal
-    out = np.zeros((2, *lattice.shape))
-    for family in range(2):
-        piece = np.nan_to_num(np.diff(lattice, axis=family))
-        length = np.linalg.norm(piece, axis=2, keepdims=True)
-        unit = piece / np.where(length > 0.0, length, 1.0)
-        low = (np.s_[:-1], np.s_[:, :-1])[family]
-        high = (np.s_[1:], np.s_[:, 1:])[family]
-        out[family][low] += unit
-        out[family][high] += unit
-    out -= (out * normal).sum(axis=3, keepdims=True) * normal
-    length = np.linalg.norm(out, axis=3, keepdims=True)
-    yarns: np.ndarray = np.where(length > 0.0, out / np.where(length > 0.0, length, 1.0), np.nan).astype(np.float32)
-    return yarns

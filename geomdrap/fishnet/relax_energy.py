@@ -1,8 +1,10 @@
 """Energy of a net that resists stretching and shear, with its exact first and second derivatives.
 
-E = Σ (l/c − 1)² over yarn pieces + Σ W(s) over corners of cells, s = sin γ there, with
-W = ratio/4·(1 ± alpha)·s² + lock/4·(|s| − s_lock)²₊. Lengths and angles are those of the straight lines between nodes; c
-is the length of that line in the geometric net, so that what a chord cuts short of a curved yarn counts nowhere.
+E = piece·Σ e² over yarn pieces + yarn·Σ (Σ e)² over whole yarns + Σ W(s) over corners of cells, with the strain
+e = l/c − 1 of a piece, s = sin γ at a corner less a target, and W = ratio/4·(1 ± alpha)·s² + lock/4·(|s| − s_lock)²₊.
+Usually piece = 1, and yarn and targets are 0; the other way round yarns slide at their crossings. Lengths and angles
+are those of the straight lines between nodes; c is the length of that line in the geometric net, so that what a chord
+cuts short of a curved yarn counts nowhere.
 """
 
 from __future__ import annotations
@@ -16,12 +18,27 @@ from geomdrap.geodesic.compiled import inlined, kernel
 
 
 class Law(NamedTuple):
-    """Shear energy at a corner: see the module."""
+    """The factors of the energy: see the module."""
 
     ratio: float
-    alpha: float
-    lock: float
-    lock_sine: float
+    alpha: float = 0.0
+    lock: float = 0.0
+    lock_sine: float = 1.0
+    piece: float = 1.0
+    yarn: float = 0.0
+
+
+@kernel
+def strain_sums(x: np.ndarray, rest_u: np.ndarray, rest_v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Sum of the strains of the pieces of each warp yarn (nv,) and of each weft yarn (nu,)."""
+    warp, weft = np.zeros(x.shape[1]), np.zeros(x.shape[0])
+    for i in range(x.shape[0]):
+        for j in range(x.shape[1]):
+            if i + 1 < x.shape[0] and rest_u[i, j] > 0.0:
+                warp[j] += math.sqrt(((x[i + 1, j] - x[i, j]) ** 2).sum()) / rest_u[i, j] - 1.0
+            if j + 1 < x.shape[1] and rest_v[i, j] > 0.0:
+                weft[i] += math.sqrt(((x[i, j + 1] - x[i, j]) ** 2).sum()) / rest_v[i, j] - 1.0
+    return warp, weft
 
 
 @inlined
@@ -38,18 +55,22 @@ def shear_energy(law: Law, s: float) -> tuple[float, float, float]:
 
 
 @kernel
-def energy(x: np.ndarray, valid: np.ndarray, rest_u: np.ndarray, rest_v: np.ndarray, law: Law) -> float:
-    """Energy of nodes x (nu, nv, 3) in the cells ``valid`` (nu - 1, nv - 1).
+def energy(
+    x: np.ndarray, valid: np.ndarray, target: np.ndarray, rest_u: np.ndarray, rest_v: np.ndarray, law: Law
+) -> float:
+    """Energy of nodes x (nu, nv, 3) in the cells ``valid`` (nu - 1, nv - 1) with sines ``target`` (nu - 1, nv - 1, 2,
+    2).
 
     ``rest_u`` (nu - 1, nv), ``rest_v`` (nu, nv - 1): lengths c of the pieces, mm, 0 where there is none.
     """
-    total = 0.0
+    warp, weft = strain_sums(x, rest_u, rest_v)
+    total = law.yarn * ((warp**2).sum() + (weft**2).sum())
     for i in range(x.shape[0]):
         for j in range(x.shape[1]):
             if i + 1 < x.shape[0] and rest_u[i, j] > 0.0:
-                total += (math.sqrt(((x[i + 1, j] - x[i, j]) ** 2).sum()) / rest_u[i, j] - 1.0) ** 2
+                total += law.piece * (math.sqrt(((x[i + 1, j] - x[i, j]) ** 2).sum()) / rest_u[i, j] - 1.0) ** 2
             if j + 1 < x.shape[1] and rest_v[i, j] > 0.0:
-                total += (math.sqrt(((x[i, j + 1] - x[i, j]) ** 2).sum()) / rest_v[i, j] - 1.0) ** 2
+                total += law.piece * (math.sqrt(((x[i, j + 1] - x[i, j]) ** 2).sum()) / rest_v[i, j] - 1.0) ** 2
     for i in range(valid.shape[0]):
         for j in range(valid.shape[1]):
             if valid[i, j]:
@@ -58,7 +79,7 @@ def energy(x: np.ndarray, valid: np.ndarray, rest_u: np.ndarray, rest_v: np.ndar
                         p = x[i + di, j + dj]
                         q, t = x[i + 1 - di, j + dj] - p, x[i + di, j + 1 - dj] - p
                         f = (q * t).sum() / math.sqrt((q * q).sum() * (t * t).sum())
-                        total += shear_energy(law, f if di == dj else -f)[0]
+                        total += shear_energy(law, (f if di == dj else -f) - target[i, j, di, dj])[0]
     return total
 
 
@@ -86,13 +107,15 @@ def add_piece_terms(
     k: int,
     m: int,
     c: float,
+    stiffness: float,
+    tension: float,
     full: bool,
 ) -> None:
-    """Derivatives of one yarn piece from node (i, j) to (k, m)."""
+    """Derivatives of one yarn piece from node (i, j) to (k, m), with the ``tension`` of its whole yarn."""
     d = x[k, m] - x[i, j]
     length = math.sqrt((d * d).sum())
     d = d / length
-    pull = 2.0 * (length / c - 1.0) / c
+    pull = (2.0 * stiffness * (length / c - 1.0) + tension) / c
     g[k, m] += pull * d
     g[i, j] -= pull * d
     size[i, j] += abs(pull)
@@ -101,7 +124,7 @@ def add_piece_terms(
     block = np.empty((3, 3))
     for r in range(3):
         for s in range(3):
-            block[r, s] = (2.0 / c**2 - across) * d[r] * d[s] + (across if r == s else 0.0)
+            block[r, s] = (2.0 * stiffness / c**2 - across) * d[r] * d[s] + (across if r == s else 0.0)
     add_block(h, basis, i, j, i, j, block)
     add_block(h, basis, k, m, k, m, block)
     add_block(h, basis, i, j, k, m, -block)
@@ -120,6 +143,7 @@ def add_corner_terms(
     k: int,
     m: int,
     sign: float,
+    target: float,
     law: Law,
     full: bool,
 ) -> None:
@@ -128,7 +152,7 @@ def add_corner_terms(
     lq, lt = math.sqrt((q * q).sum()), math.sqrt((t * t).sum())
     q, t = q / lq, t / lt
     f = (q * t).sum()
-    _, dw, ddw = shear_energy(law, sign * f)
+    _, dw, ddw = shear_energy(law, sign * f - target)
     dw *= sign
     gq, gt = (t - f * q) / lq, (q - f * t) / lt
     g[k, j] += dw * gq
@@ -163,6 +187,7 @@ def derivatives(
     x: np.ndarray,
     basis: np.ndarray,
     valid: np.ndarray,
+    target: np.ndarray,
     rest_u: np.ndarray,
     rest_v: np.ndarray,
     law: Law,
@@ -171,26 +196,29 @@ def derivatives(
     """Gradient (nu, nv, 3), second derivative (nu, nv, 3, 3, 2, 2) and size of the forces (nu, nv).
 
     The second derivative is that along the tangent vectors ``basis`` (nu, nv, 3, 2) of a node and of its eight
-    neighbours, without the part of the surface's curvature; where not ``full`` it is made positive by leaving out what
-    may be negative. The size is the sum of the forces at a node without regard to their directions.
+    neighbours, without the part of the surface's curvature and that of whole yarns; where not ``full`` it is made
+    positive by leaving out what may be negative. The size is the sum of the forces at a node without regard to their
+    directions.
     """
     nu, nv = x.shape[0], x.shape[1]
     g = np.zeros((nu, nv, 3))
     h = np.zeros((nu, nv, 3, 3, 2, 2))
     size = np.zeros((nu, nv))
+    warp, weft = strain_sums(x, rest_u, rest_v)
+    warp, weft = 2.0 * law.yarn * warp, 2.0 * law.yarn * weft
     for i in range(nu):
         for j in range(nv):
             if i + 1 < nu and rest_u[i, j] > 0.0:
-                add_piece_terms(x, basis, g, h, size, i, j, i + 1, j, rest_u[i, j], full)
+                add_piece_terms(x, basis, g, h, size, i, j, i + 1, j, rest_u[i, j], law.piece, warp[j], full)
             if j + 1 < nv and rest_v[i, j] > 0.0:
-                add_piece_terms(x, basis, g, h, size, i, j, i, j + 1, rest_v[i, j], full)
+                add_piece_terms(x, basis, g, h, size, i, j, i, j + 1, rest_v[i, j], law.piece, weft[i], full)
     for i in range(nu - 1):
         for j in range(nv - 1):
             if valid[i, j]:
                 for di in range(2):
                     for dj in range(2):
                         sign = 1.0 if di == dj else -1.0
-                        add_corner_terms(
-                            x, basis, g, h, size, i + di, j + dj, i + 1 - di, j + 1 - dj, sign, law, full
-                        )
+                        k, m, far_k, far_m = i + di, j + dj, i + 1 - di, j + 1 - dj  # the corner, and those beside it
+                        aim = target[i, j, di, dj]
+                        add_corner_terms(x, basis, g, h, size, k, m, far_k, far_m, sign, aim, law, full)
     return g, h, size

@@ -54,9 +54,10 @@ def smooth_normals(triangles: np.ndarray, normals: np.ndarray, angles: np.ndarra
 
 
 class Footing(NamedTuple):
-    """Where nodes stand: ``point`` (n, 3) mm of ``face`` (n,), ``lifted`` (n, 3) mm over it on the curved patch, unit
+    """Where nodes stand.
 
-    ``normal`` (n, 3), how it turns ``turning`` (n, 3, 3) per mm, and ``outside`` (n,) mm, the distance beyond the rim.
+    ``point`` (n, 3) mm of ``face`` (n,), and ``lifted`` (n, 3) mm over it on the curved patch; unit ``normal`` (n, 3)
+    and ``turning`` (n, 3, 3) per mm, how it turns; ``outside`` (n,) mm, the distance beyond the rim.
     """
 
     point: np.ndarray

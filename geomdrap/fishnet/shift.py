@@ -44,7 +44,8 @@ def displaced(shift: Shift, meant: Seed, plant: Callable[[float], Seed], mesh: M
     if length == 0.0:
         return plant(shift.dangle)
     ray = plant(math.degrees(course))
-    status, face, x, y, dx, dy, *_ = follow(mesh.row, mesh.link, int(ray.starts[0]), *ray.places[0], length)
+    x0, y0, dx0, dy0 = ray.places[0]
+    status, face, x, y, dx, dy, *_ = follow(mesh.row, mesh.link, int(ray.starts[0]), x0, y0, dx0, dy0, length)
     if status != ENDED or face >= faces:
         raise DrapeError(
             f"a placement of du = {shift.du:g} mm, dv = {shift.dv:g} mm moves the seed off the part; use smaller ones"

@@ -3,9 +3,9 @@
 A weft piece is as long as the shear makes it that the fabric has there, and lengths and shear together obey a
 hyperbolic equation whose characteristics are the warp yarns and lines that lean from the weft yarns towards the weft
 axis. What a cell needs to know therefore lies in the cells below it *and beyond*: shear is taken at the same place in
-the two rows of cells nearer to the warp axis, centred on the piece, and carried on in a straight line to this row. That
-is second order in the pitch, needs no iteration, and does not blow up what the facets stir, as any rule does that
-takes the shear of the cell alone.
+the two rows of cells nearer to the warp axis, centred on the piece, and carried on in a straight line to this row.
+That is second order in the pitch, needs no iteration, and does not blow up what the facets stir, as any rule does
+that takes the shear of the cell alone.
 """
 
 from __future__ import annotations

@@ -1,0 +1,61 @@
+"""Yarns that slide at their crossings, so that shear is relieved while each yarn keeps its length."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from geomdrap.fishnet import Effect, Net, Parameter
+from geomdrap.fishnet.relax import pose, relax
+from geomdrap.fishnet.relax_energy import Law
+from geomdrap.fishnet.relax_net import as_net, chord_sines
+
+SLIDING = 0.02  # what a piece resists changing its length by sliding, as a share of shear
+WHOLE_YARN = (1.0, 1e2, 1e4)  # what a whole yarn resists, raised step by step until it keeps its length
+
+
+class CrossingSlip(Effect):
+    """Part of the shear beyond an onset is relieved; pieces of a yarn change their lengths, their sum does not."""
+
+    name = "crossing-slip"
+    summary = "Yarns slide at the crossings and relieve part of the shear; each keeps its total length."
+    equation = (
+        "min Σ (sin γ − sin γ*)²/4 over corners + 0.02·Σ e² over sides, Σ e = 0 along each yarn, e the strain of a "
+        "side by sliding, γ* = γ0 − share·(|γ0| − onset)₊·sign γ0, γ0 the shear without slip"
+    )
+    physics = (
+        "Beyond some shear it is easier for yarns to slide at the crossings than to turn further. Crossings move "
+        "along their yarns to where the shear is less; their spacing becomes uneven, but no yarn gets longer, and "
+        "shear is below that of the pin-jointed net, the more the larger it is."
+    )
+    source = "slip share as found in bias-extension tests by J. Cao et al., Composites A 39 (2008), fig. 36"
+    stage = "net"
+    seen_by = "marked crossings; angles only together with other effects"
+    confounded_with = ("locking", "springback", "yarn-extension")
+    rank = 80.0
+    parameters = (
+        Parameter("share", "", 0.0, 1.0, 0.15, 0.0, "share of the shear beyond the onset that slip is to relieve"),
+        Parameter("onset", "deg", 0.0, 80.0, 25.0, 25.0, "shear at which yarns begin to slide"),
+    )
+
+    @property
+    def is_neutral(self) -> bool:
+        """Whether nothing is relieved, whatever the onset."""
+        return self.values["share"] == 0.0
+
+    def on_net(self, net: Net) -> Net:
+        """The net with crossings that have slid."""
+        problem = pose(net, Law(ratio=1.0, piece=SLIDING))
+        shear = np.nan_to_num(net.cell_shear)
+        left = np.abs(shear) - self.values["share"] * np.maximum(np.abs(shear) - self.values["onset"], 0.0)
+        relief = np.sin(np.radians(left)) * np.sign(shear) - np.sin(np.radians(shear))
+        target = chord_sines(problem.x0, problem.valid) + relief[..., None, None]
+        problem = replace(problem, target=np.where(problem.valid[..., None, None], target, 0.0))
+        x = net.lattice
+        for stiffness in WHOLE_YARN:
+            problem = replace(problem, law=problem.law._replace(yarn=stiffness))
+            found = relax(problem, x)
+            x = np.where(np.isfinite(net.lattice), found.x, math.nan)
+        return as_net(net, problem, found)

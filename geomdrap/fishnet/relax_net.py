@@ -1,0 +1,115 @@
+"""A relaxed net as a Net: positions, shear, directions and lengths renewed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.fishnet.grid import Status
+from geomdrap.fishnet.net import cells_of
+from geomdrap.fishnet.relax import GOOD_ENOUGH
+
+if TYPE_CHECKING:
+    from geomdrap.fishnet.net import Net
+    from geomdrap.fishnet.relax import Problem, Relaxed
+
+
+def as_net(net: Net, problem: Problem, found: Relaxed) -> Net:
+    """The net with its nodes where they came to rest; those that came to lie beyond the rim are off the part."""
+    moves = problem.number >= 0
+    off = np.ones(moves.shape, bool)
+    off[moves] = found.footing.outside > 1e-9 * net.pitch
+    lattice = np.full(found.x.shape, np.nan)
+    lattice[moves] = found.footing.point
+    lattice[off] = np.nan
+    face = np.full(moves.shape, -1)
+    face[moves] = found.footing.face
+    face[off | (face >= len(net.surface.triangles))] = -1
+    face[~np.isfinite(net.points[..., 0])] = -1  # in a hole
+    points = np.where(face[..., None] < 0, np.nan, lattice)
+    status = net.status_around.copy()
+    status[1:-1, 1:-1][np.isfinite(net.lattice[..., 0]) & off] = Status.OFF_PART
+    lattice_valid = net.lattice_valid & np.isfinite(cells_of(lattice[..., 0])).all(axis=0)
+    cell_valid = net.cell_valid & np.isfinite(cells_of(points[..., 0])).all(axis=0)
+    before, after = (chord_shears(x, net.lattice_valid) for x in (problem.x0, found.x))
+    return replace(
+        net,
+        points=points,
+        face=face.astype(net.face.dtype),
+        status_around=status,
+        lattice=lattice,
+        lattice_valid=lattice_valid,
+        cell_valid=cell_valid,
+        cell_shear=np.where(cell_valid, net.cell_shear + after[0] - before[0], np.nan),
+        shear=np.where(np.isfinite(points[..., 0]), net.shear + after[1] - before[1], np.nan),
+        yarns=_yarns(lattice, found, moves),
+        sides=_sides(net, problem, found),
+        notes=(*net.notes, f"net of least energy, forces balanced to {found.unrest:.0e} in {found.rounds} rounds"),
+        warnings=(*net.warnings, *_doubts(net, found)),
+    )
+
+
+def _sides(net: Net, problem: Problem, found: Relaxed) -> tuple[np.ndarray, np.ndarray]:
+    """Lengths of warp and weft pieces: those of the geometric net, stretched as the lines between the nodes are."""
+    lengths = net.sides or (np.diff(net.u)[:, None], np.diff(net.v)[None, :])
+    rests = (np.where(rest > 0.0, rest, np.nan) for rest in (problem.rest_u, problem.rest_v))
+    chords = (np.linalg.norm(np.diff(found.x, axis=axis), axis=2) for axis in (0, 1))
+    warp, weft = (c / r * length for c, r, length in zip(chords, rests, lengths, strict=True))
+    return warp, weft
+
+
+def _doubts(net: Net, found: Relaxed) -> tuple[str, ...]:
+    """A warning where the net is not at rest."""
+    if found.unrest <= GOOD_ENOUGH:
+        return ()
+    return (
+        f"the net of {net.surface.source} has not come to rest (forces out of balance by {found.unrest:.1g}): the "
+        "part has sharp edges, or the fabric locks; use a finer mesh, another pitch, or a smaller blank and compare",
+    )
+
+
+CORNERS = np.s_[:-1, :-1], np.s_[:-1, 1:], np.s_[1:, :-1], np.s_[1:, 1:]  # (i, j), (i, j + 1), ... of each cell
+
+
+def chord_sines(x: np.ndarray, valid: np.ndarray) -> np.ndarray:
+    """Sines of the shear at the corners of cells (nu - 1, nv - 1, 2, 2), from the straight lines between nodes."""
+    sines = np.zeros((*valid.shape, 2, 2))
+    for at, corner in enumerate(CORNERS):
+        di, dj = divmod(at, 2)
+        beside_u, beside_v = x[CORNERS[2 - 2 * di + dj]] - x[corner], x[CORNERS[2 * di + 1 - dj]] - x[corner]
+        size = np.linalg.norm(beside_u, axis=2) * np.linalg.norm(beside_v, axis=2)
+        cosine = (beside_u * beside_v).sum(axis=2) / np.where(valid, size, 1.0)
+        sines[:, :, di, dj] = np.where(valid, (1 - 2 * (di ^ dj)) * np.clip(cosine, -1.0, 1.0), 0.0)
+    return sines
+
+
+def chord_shears(x: np.ndarray, valid: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Shear of cells (nu - 1, nv - 1) and at nodes (nu, nv), degrees, from the straight lines between nodes."""
+    sines = chord_sines(x, valid)
+    total, count = np.zeros(x.shape[:2]), np.zeros(x.shape[:2])
+    for at, corner in enumerate(CORNERS):
+        total[corner] += np.degrees(np.arcsin(sines[:, :, at // 2, at % 2]))
+        count[corner] += valid
+    cells = np.where(valid, np.degrees(np.arcsin(sines.mean(axis=(2, 3)))), np.nan)
+    return cells, np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+
+def _yarns(lattice: np.ndarray, found: Relaxed, moves: np.ndarray) -> np.ndarray:
+    """Unit directions of warp and weft (2, nu, nv, 3) in the tangent plane: the mean of both pieces at a node."""
+    normal = np.zeros(lattice.shape)
+    normal[moves] = found.footing.normal
+    out = np.zeros((2, *lattice.shape))
+    for family in range(2):
+        piece = np.nan_to_num(np.diff(lattice, axis=family))
+        length = np.linalg.norm(piece, axis=2, keepdims=True)
+        unit = piece / np.where(length > 0.0, length, 1.0)
+        low = (np.s_[:-1], np.s_[:, :-1])[family]
+        high = (np.s_[1:], np.s_[:, 1:])[family]
+        out[family][low] += unit
+        out[family][high] += unit
+    out -= (out * normal).sum(axis=3, keepdims=True) * normal
+    length = np.linalg.norm(out, axis=3, keepdims=True)
+    yarns: np.ndarray = np.where(length > 0.0, out / np.where(length > 0.0, length, 1.0), np.nan).astype(np.float32)
+    return yarns
