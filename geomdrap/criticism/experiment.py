@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.fishnet import Effect, Fabric, Net, drape
+from geomdrap.fishnet import Effect, Net, drape
 from geomdrap.fishnet.effect import in_order, surface_with
 
 if TYPE_CHECKING:
@@ -58,14 +58,12 @@ class Experiment:
 
     def predict(self, effects: Sequence[Effect] = ()) -> np.ndarray:
         """The model's values (m,), NaN where it has none."""
-        others = [e for e in effects if not relaxes(e)]
-        if len(others) == len(effects):
-            return self._flat(self.draped(effects, self.pitches[0]))
-        # A relaxed net is costly: on a coarse net, with what the coarseness changes in the same net unrelaxed
-        fine = self._flat(self.draped(others, self.pitches[0]))
-        coarse = self._flat(self.draped(others, self.pitches[1]))
-        relaxed = self._flat(self.draped(effects, self.pitches[1]))
-        return relaxed + (fine - coarse)
+        if not any(e.costly for e in effects):
+            return self._flat(self.draped(effects))
+        # what is costly is done on a coarse net, with what the coarseness changes in the same net without it
+        stiff = [e for e in effects if not e.costly]
+        fine, coarse = (self._flat(self.draped(stiff, pitch)) for pitch in self.pitches)
+        return self._flat(self.draped(effects, self.pitches[1])) + (fine - coarse)
 
     def draped(self, effects: Sequence[Effect] = (), pitch: float | None = None) -> Net:
         """The model's net with effects, at the model's own pitch (mm) unless another is given."""
@@ -110,11 +108,6 @@ class Experiment:
     def point_of(self) -> np.ndarray:
         """Number of the point of each value (m,)."""
         return np.nonzero(self.mask.T)[1]
-
-
-def relaxes(effect: Effect) -> bool:
-    """Whether an effect makes the net one of least energy, which takes a hundred times as long."""
-    return effect.on_fabric(Fabric()).relaxes
 
 
 def flatten(table: np.ndarray, mask: np.ndarray) -> np.ndarray:

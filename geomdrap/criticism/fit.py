@@ -14,7 +14,7 @@ import numpy as np
 Predict = Callable[[np.ndarray], np.ndarray]
 
 STEPS = 12  # most accepted or refused steps
-SMALL = 0.02  # of chi-square: a step that gains less ends the fit
+SMALL = 0.05  # of chi-square: a step that promises or gains less ends the fit
 LEAST_STEP = 1e-3  # of a parameter's own step, in every parameter: less ends the fit, too
 
 
@@ -58,7 +58,8 @@ def fit(
     fresh = slopes is None
     for _ in range(STEPS):
         step = _step(whiten(jacobian), whiten(filled), damping, values, low, high)
-        if (np.abs(step) <= LEAST_STEP * steps).all():
+        foreseen = chi2 - _square(whiten(filled - jacobian @ step))
+        if (np.abs(step) <= LEAST_STEP * steps).all() or foreseen < SMALL:
             break
         there = predict(values + step)
         new = measured - there
@@ -81,7 +82,7 @@ def fit(
             damping = max(4.0 * damping, 0.3)
             if damping > 100.0:
                 break
-    return Fit(values, np.where(lost, np.nan, filled), jacobian, chi2)
+    return Fit(values, np.where(lost, np.nan, filled), jacobian, _square(whiten(np.where(lost, 0.0, filled))))
 
 
 def take_slopes(

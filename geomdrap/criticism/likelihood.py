@@ -164,6 +164,22 @@ def square_beside(residual: np.ndarray, slopes: np.ndarray) -> float:
     return float(left @ left)
 
 
+def deviations(slopes: np.ndarray) -> np.ndarray:
+    """Standard deviations (p,) of parameters with whitened slopes (m, p); infinite where nothing is seen of one."""
+    return np.sqrt(np.diag(covariance(slopes)))
+
+
+def covariance(slopes: np.ndarray) -> np.ndarray:
+    """Covariance (p, p) of parameters with whitened slopes (m, p)."""
+    size = np.linalg.norm(slopes, axis=0)
+    seen = size > 0.0
+    scaled = slopes[:, seen] / size[seen]
+    out = np.zeros((len(size), len(size)))
+    out[np.ix_(seen, seen)] = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12) / np.outer(size[seen], size[seen])
+    out[~seen, ~seen] = np.inf
+    return out
+
+
 def spanned(columns: np.ndarray) -> np.ndarray:
     """Orthonormal columns (m, r) that span those given (m, p)."""
     if not columns.size:

@@ -23,9 +23,10 @@ Whiten = Callable[[np.ndarray], np.ndarray]
 STEP = 0.1  # of a parameter's typical size: the differences with which slopes are taken
 GROWING = (0.3, 1.0, 3.0, 8.0)  # times the typical size of a parameter that grows from 0: where the search looks first
 FALLING = (0.3, 0.6, 0.9, 1.2, 1.5)  # of the way from a parameter's greatest value to its typical one, likewise
-SHAPES = (0.1, 0.35, 0.6, 0.85)  # of the range of a parameter that does nothing alone
+SHAPES = (0.05, 0.2, 0.4, 0.6)  # of the range of a parameter that does nothing alone
 HALVINGS = 3  # of the gaps between probes
 SAME = 3.0  # of chi-square: probes this close do equally well
+PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
 NOTHING = 1e-6  # of the noise: less is no signature
 
 
@@ -53,7 +54,7 @@ class Model:
     @property
     def steps(self) -> np.ndarray:
         """Differences (p,) with which slopes are taken."""
-        return np.array([STEP * abs(p.typical - p.neutral) for _, p in self.parameters])
+        return np.array([STEP * (abs(p.typical - p.neutral) or 0.2 * (p.high - p.low)) for _, p in self.parameters])
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
@@ -136,7 +137,18 @@ def add_effect(experiment: Experiment, whiten: Whiten, base: Fitted, effect: str
     own = slice(len(base.values), None)
     slopes = take_slopes(predict, start, predict(start), model.steps, low, high, np.arange(len(start))[own])
     slopes[:, : len(base.values)] = base.fit.slopes
+    residual = experiment.measured - predict(start)
+    if not _promises(whiten, base, np.where(np.isnan(residual), base.fit.residual, residual), slopes):
+        neutral = np.append(base.values, [p.neutral for p in make(effect).parameters])
+        return Fitted(model, Fit(neutral, base.fit.residual, slopes, base.fit.chi2))
     return Fitted(model, fit(predict, experiment.measured, whiten, start, model.steps, low, high, slopes))
+
+
+def _promises(whiten: Whiten, base: Fitted, residual: np.ndarray, slopes: np.ndarray) -> bool:
+    """Whether a fit could gain enough to be worth its drapes, by what its slopes promise."""
+    before = square_beside(whiten(np.nan_to_num(base.fit.residual)), whiten(base.fit.slopes))
+    after = square_beside(whiten(np.nan_to_num(residual)), whiten(slopes))
+    return before - after > max(PROMISE * max(before - len(residual), 0.0), LEAST_PROMISE)
 
 
 def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
@@ -182,22 +194,46 @@ def _start(
     def misfit(values: np.ndarray) -> float:
         return square_beside(whiten(residual - signature(values)), shifts)
 
-    best = min(_probes(own, acting), key=misfit)
     if len(own) == 1:
-        best = np.array([_narrowed(lambda x: misfit(np.array([x])), [float(v[0]) for v in _probes(own, acting)])])
-    left = whiten(residual - signature(best))
-    step = np.linalg.lstsq(shifts, left, rcond=1e-9)[0]
-    return np.append(base.values + step, best)
+        now = square_beside(whiten(residual), shifts)
+        best = np.array([_narrowed(lambda x: misfit(np.array([x])), _probes(own[0]), now)])
+    else:
+        best = min((_scaled(shape, own, acting, signature, whiten, residual, shifts) for shape in _shapes(own, acting)), key=misfit)
+    return _best_place(experiment, predict, whiten, base, best)
 
 
-def _narrowed(misfit: Callable[[float], float], probes: Sequence[float]) -> float:
-    """The best of the probes, after halving the gaps beside the best a few times.
+def _best_place(
+    experiment: Experiment,
+    predict: Callable[[np.ndarray], np.ndarray],
+    whiten: Whiten,
+    base: Fitted,
+    best: np.ndarray,
+) -> np.ndarray:
+    """Values of the base to go with values ``best`` of a new effect: from its own, or from the placement as meant.
+
+    A base without the effect may have gone far astray to make up for it.
+    """
+    shifts = whiten(base.fit.slopes)
+    meant = base.values.copy()
+    meant[:3] = 0.0
+    starts = []
+    for values in (base.values, meant):
+        left = whiten(np.nan_to_num(experiment.measured - predict(np.append(values, best))))
+        step = np.linalg.lstsq(shifts, left, rcond=1e-9)[0]
+        starts.append((square_beside(left, shifts), np.append(values + step, best)))
+    return min(starts, key=lambda start: start[0])[1]
+
+
+def _narrowed(misfit: Callable[[float], float], probes: Sequence[float], now: float) -> float:
+    """The best of the probes; where none is better than ``now``, after halving the gaps beside the best.
 
     Of probes that do equally well the last is taken: an effect that does nothing up to a threshold begins there.
     """
     known = {x: misfit(x) for x in probes}
     for _ in range(HALVINGS):
         least = min(known.values())
+        if least < now - SAME:
+            break
         best = max(x for x, value in known.items() if value <= least + SAME)
         order = sorted(known)
         k = order.index(best)
@@ -208,16 +244,36 @@ def _narrowed(misfit: Callable[[float], float], probes: Sequence[float]) -> floa
     return min(known, key=lambda x: known[x])
 
 
-def _probes(own: Sequence[Parameter], acting: Sequence[int]) -> list[np.ndarray]:
-    """Combinations of values where the search looks first."""
-    each = []
-    for k, q in enumerate(own):
-        if k not in acting:
-            each.append([q.low + f * (q.high - q.low) for f in SHAPES])
-        else:
-            factors = GROWING if q.typical > q.neutral else FALLING
-            each.append(sorted({_clip(q.neutral + f * (q.typical - q.neutral), q) for f in factors}))
+def _probes(own: Parameter) -> list[float]:
+    """Values of a one-sided parameter where the search looks first."""
+    factors = GROWING if own.typical > own.neutral else FALLING
+    return sorted({_clip(own.neutral + f * (own.typical - own.neutral), own) for f in factors})
+
+
+def _shapes(own: Sequence[Parameter], acting: Sequence[int]) -> list[np.ndarray]:
+    """Values of the parameters that do nothing alone, over their ranges; the others at their typical sizes."""
+    each = [
+        [q.typical] if k in acting else [q.low + f * (q.high - q.low) for f in SHAPES] for k, q in enumerate(own)
+    ]
     return [np.array(values) for values in product(*each)]
+
+
+def _scaled(
+    shape: np.ndarray,
+    own: Sequence[Parameter],
+    acting: Sequence[int],
+    signature: Callable[[np.ndarray], np.ndarray],
+    whiten: Whiten,
+    residual: np.ndarray,
+    shifts: np.ndarray,
+) -> np.ndarray:
+    """The values with the acting ones as large as the residual wants them, were their signature linear."""
+    column = whiten(signature(shape))
+    factor = float(np.linalg.lstsq(np.column_stack([shifts, column]), whiten(residual), rcond=1e-9)[0][-1])
+    out = shape.copy()
+    for k in acting:
+        out[k] = _clip(own[k].neutral + factor * (shape[k] - own[k].neutral), own[k])
+    return out
 
 
 def _within(values: np.ndarray, own: Sequence[Parameter]) -> np.ndarray:

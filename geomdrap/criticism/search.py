@@ -10,9 +10,10 @@ import numpy as np
 from geomdrap.criticism.evidence import Evidence, among_all, chance
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.holdout import blocks_of, held_out_error
-from geomdrap.criticism.likelihood import Judge, Residuals, Scatter
+from geomdrap.criticism.likelihood import Judge, Residuals, Scatter, deviations
 from geomdrap.criticism.model import Fitted, Whiten, add_effect
 
+CLEAR = 3.0  # standard deviations from nothing
 CLIMB = 3  # models for which the likeliest scatter is searched: the base and the best two
 
 
@@ -64,7 +65,8 @@ def try_effects(
     best = scatter[int(likelihood.argmax())]
     squares = [judge.square(best, r) for r in linear]
     floor = float(rows.sum())
-    evidence = _weigh(models, likelihood, squares, errors, floor)
+    spreads = [deviations(judge.whiten(s)(r.slopes)) for s, r in zip(scatter[1:], linear[1:], strict=True)]
+    evidence = _weigh(models, likelihood, squares, errors, spreads, floor)
     return Round(base, tuple(trials), evidence, tuple(scatter), rows, judge, errors[0], tuple(failed))
 
 
@@ -90,7 +92,12 @@ def unit_of(experiment: Experiment) -> float:
 
 
 def _weigh(
-    models: Sequence[Fitted], likelihood: np.ndarray, squares: Sequence[float], errors: Sequence[float], floor: float
+    models: Sequence[Fitted],
+    likelihood: np.ndarray,
+    squares: Sequence[float],
+    errors: Sequence[float],
+    spreads: Sequence[np.ndarray],
+    floor: float,
 ) -> tuple[Evidence, ...]:
     """Evidence for every model after the first, which is the base."""
     base = models[0]
@@ -111,7 +118,7 @@ def _weigh(
                 p_family=float(family[k]),
                 share=min((squares[0] - squares[k + 1]) / misfit, 1.0) if clear else 0.0,
                 cv_ratio=errors[k + 1] / errors[0],
-                in_range=_in_range(model),
+                in_range=_in_range(model, spreads[k]),
             )
         )
     return tuple(out)
@@ -123,12 +130,16 @@ def _shapes(model: Fitted) -> int:
     return sum(1 for p, _ in own if p.neutral in (p.low, p.high))
 
 
-def _in_range(model: Fitted) -> bool:
-    """Whether the last effect acts, and no value lies at a bound that is not its neutral one."""
+def _in_range(model: Fitted, sigma: np.ndarray) -> bool:
+    """Whether the last effect certainly acts, and no value lies at a bound that is not its neutral one.
+
+    ``sigma`` (p,): standard deviations of the model's values.
+    """
     own = model.parameters_of(model.model.effects[-1])
     values = [(p, float(model.values[k])) for p, k in own]
     at_bound = [v in (p.low, p.high) and v != p.neutral and not _natural(p, v) for p, v in values]
-    return not any(at_bound) and any(v != p.neutral for p, v in values)
+    acts = any(abs(v - p.neutral) > CLEAR * sigma[k] for (p, v), (_, k) in zip(values, own, strict=True))
+    return not any(at_bound) and acts
 
 
 def _natural(parameter: object, value: float) -> bool:

@@ -10,7 +10,7 @@ from geomdrap.criticism.diagnosis import Tried, Value
 from geomdrap.criticism.evidence import FAMILY, Evidence
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.holdout import blocks_of, held_out_error
-from geomdrap.criticism.likelihood import Scatter
+from geomdrap.criticism.likelihood import Scatter, deviations
 from geomdrap.criticism.model import Fitted
 from geomdrap.criticism.search import Round, judge_of
 from geomdrap.criticism.signature import ALIKE, beside_base, least_visible, look_alike
@@ -33,18 +33,10 @@ def errors_of(experiment: Experiment, model: Fitted) -> tuple[float, float, floa
     return error, held_out, rms_position, float(np.sqrt(np.mean(residual[shear] ** 2))) if shear.any() else None
 
 
-def covariance_of(experiment: Experiment, model: Fitted, scatter: Scatter) -> np.ndarray:
-    """Covariance (p, p) of a model's values under noise and scatter."""
-    rows = np.isfinite(model.fit.residual)
-    slopes = judge_of(experiment, rows).whiten(scatter)(model.fit.slopes[rows])
-    size = np.linalg.norm(slopes, axis=0) + 1e-300
-    scaled = slopes / size
-    return np.asarray(np.linalg.pinv(scaled.T @ scaled, rcond=1e-12) / np.outer(size, size))
-
-
 def values_of(experiment: Experiment, model: Fitted, scatter: Scatter, effect: str) -> tuple[Value, ...]:
     """Fitted parameters of an effect with their standard deviations."""
-    sigma = np.sqrt(np.diag(covariance_of(experiment, model, scatter)))
+    rows = np.isfinite(model.fit.residual)
+    sigma = deviations(judge_of(experiment, rows).whiten(scatter)(model.fit.slopes[rows]))
     return tuple(
         Value(p.name, float(model.values[k]), float(sigma[k]), p.unit) for p, k in model.parameters_of(effect)
     )

@@ -35,6 +35,7 @@ class CrossingSlip(Effect):
     seen_by = "marked crossings; angles only together with other effects"
     confounded_with = ("locking", "springback", "yarn-extension")
     rank = 80.0
+    costly = True
     parameters = (
         Parameter("share", "", 0.0, 1.0, 0.15, 0.0, "share of the shear beyond the onset that slip is to relieve"),
         Parameter("onset", "deg", 0.0, 80.0, 25.0, 25.0, "shear at which yarns begin to slide"),

@@ -22,6 +22,7 @@ class Locking(Effect):
     stage = "fabric"
     seen_by = "shear, marked crossings"
     confounded_with = ("shear-stiffness", "crossing-slip")
+    costly = True
     parameters = (Parameter("angle", "deg", 1.0, 90.0, 40.0, 90.0, "shear at which the yarns touch"),)
 
     def on_fabric(self, fabric: Fabric) -> Fabric:

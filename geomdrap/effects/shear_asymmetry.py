@@ -22,6 +22,7 @@ class ShearAsymmetry(Effect):
     stage = "fabric"
     seen_by = "marked crossings, shear, fibre directions"
     confounded_with = ("weave-skew", "shear-stiffness", "placement")
+    costly = True
     parameters = (Parameter("alpha", "", -0.9, 0.9, 0.2, 0.0, "(stiffness of γ > 0 − of γ < 0) / their sum"),)
 
     def on_fabric(self, fabric: Fabric) -> Fabric:

@@ -23,6 +23,7 @@ class ShearStiffness(Effect):
     stage = "fabric"
     seen_by = "marked crossings, shear, fibre directions"
     confounded_with = ("steering", "shear-asymmetry", "locking")
+    costly = True
     parameters = (Parameter("ratio", "", 0.0, 1.0, 0.003, 0.0, "shear stiffness as a share of that of the yarns"),)
 
     def on_fabric(self, fabric: Fabric) -> Fabric:
