@@ -44,7 +44,8 @@ class Problem:
     """What is held fixed while a net relaxes; arrays as in ``relax_energy``.
 
     ``x0`` (nu, nv, 3) is the geometric net, ``number`` (nu, nv) of the nodes that move, -1 for others; ``fixed`` node
-    and ``guided`` node, which moves only in the plane through the seed across ``side``.
+    and ``guided`` node, which moves only in the plane through the seed across ``side``, and where they are, ``held``
+    (2, 3) mm.
     """
 
     surface: Surface

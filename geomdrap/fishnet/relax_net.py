@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def as_net(net: Net, problem: Problem, found: Relaxed) -> Net:
-    """The net with its nodes where they came to rest; those that came to lie beyond the rim are off the part."""
+    """The net with its nodes where they came to rest; those beyond the rim, or without a cell, are off the part."""
     moves = problem.number >= 0
     off = np.ones(moves.shape, bool)
     off[moves] = found.footing.outside > ON_RIM * net.pitch

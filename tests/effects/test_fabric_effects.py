@@ -82,7 +82,9 @@ def test_at_full_slip_warp_yarns_on_a_sphere_are_circles_of_latitude():
         net = drape(surface, "slip:coefficient=1", origin=(0.0, 0.0, radius), pitch=pitch, reach=(50.0, 50.0))
         points, shear = sliding_net(*grid_of(net), radius)
         inner = np.s_[1:-1, 1:-1]
-        misses.append((np.sqrt(np.nanmean((net.points - points)[inner] ** 2)), np.nanmax(abs(net.shear - shear)[inner])))
+        misses.append(
+            (np.sqrt(np.nanmean((net.points - points)[inner] ** 2)), np.nanmax(abs(net.shear - shear)[inner]))
+        )
     assert misses[0][0] < 0.015
     assert misses[0][0] / misses[1][0] > 3.0
     assert misses[1][1] < 0.1  # of up to 22 degrees

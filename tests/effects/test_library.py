@@ -67,7 +67,10 @@ def test_a_neutral_effect_changes_nothing_at_all(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_a_typical_effect_changes_something_and_is_named_by_the_net(name):
     effect = gd.effects.find(name)
-    values = {p.name: p.typical for p in effect.parameters} | {"locking": {"angle": 10.0}, "crossing-slip": {"onset": 5.0}}.get(name, {})
+    values = {p.name: p.typical for p in effect.parameters} | {
+        "locking": {"angle": 10.0},
+        "crossing-slip": {"onset": 5.0},
+    }.get(name, {})
     part = CAP.flipped() if name == "bridging" else CAP  # a bowl, tighter than the ball
     values = {"radius": 100.0} if name == "bridging" else values
     if name == "bridging":
@@ -125,7 +128,13 @@ def test_what_is_no_effect_is_refused():
 
 
 def test_the_order_in_which_effects_are_given_makes_no_difference():
-    texts = ["springback:fraction=0.1", "slip:coefficient=0.3", "thickness:offset=2", "placement:du=2", "weave-skew:skew=1"]
+    texts = [
+        "springback:fraction=0.1",
+        "slip:coefficient=0.3",
+        "thickness:offset=2",
+        "placement:du=2",
+        "weave-skew:skew=1",
+    ]
     one, other = drape(CAP, *texts, origin=TOP), drape(CAP, *reversed(texts), origin=TOP)
     np.testing.assert_array_equal(one.points, other.points)
     np.testing.assert_array_equal(one.shear, other.shear)

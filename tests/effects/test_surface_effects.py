@@ -75,7 +75,11 @@ def test_a_smooth_valley_is_closed_to_second_order():
 
 @pytest.mark.parametrize(
     "surface",
-    [shapes.sphere_cap(30.0, 60.0, 3.0), shapes.cylinder(15.0, 60.0, 3.0, angle=180.0), shapes.plane(60.0, 40.0, 5.0)],
+    [
+        shapes.sphere_cap(30.0, 60.0, 3.0),
+        shapes.cylinder(15.0, 60.0, 3.0, angle=180.0),
+        shapes.plane(60.0, 40.0, 5.0),
+    ],
     ids=["sphere", "cylinder", "plane"],
 )
 def test_convex_parts_stay_exactly_as_they_are(surface):
@@ -105,7 +109,7 @@ def test_large_flat_facets_are_split_where_the_ply_bridges():
 
 
 def test_a_ball_that_fits_nowhere_is_refused():
-    with pytest.raises(gd.EffectError, match="touches .* nowhere"):
+    with pytest.raises(gd.EffectError, match=r"touches .* nowhere"):
         closed_points(shapes.sphere_cap(30.0, 80.0, 3.0).flipped(), 60.0)
 
 
