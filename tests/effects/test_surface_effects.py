@@ -99,6 +99,20 @@ def test_no_point_of_a_closed_surface_lies_in_the_tool_and_every_ball_still_fits
     assert np.linalg.norm(again - closed, axis=1).max() < 0.3  # closing twice closes once
 
 
+def test_a_bowl_gets_a_spherical_bottom():
+    tight = 10.0
+    reach = np.sqrt(RADIUS**2 - tight**2)
+    height = 0.5 * reach**2 / tight + tight
+    lines = np.linspace(-30.0, 30.0, 61)
+    bowl = shapes.grid_surface(lambda x, y: 0.5 * (x**2 + y**2) / tight, lines, lines)
+    closed = closed_points(bowl, RADIUS)
+    away = np.linalg.norm(closed - [0.0, 0.0, height], axis=1)
+    bottom = np.hypot(*closed[:, :2].T) < reach - 1.0
+    np.testing.assert_allclose(away[bottom], RADIUS, atol=0.05)
+    beyond = np.hypot(*bowl.points[:, :2].T) > reach + 2.0
+    np.testing.assert_allclose(closed[beyond], bowl.points[beyond], atol=0.02)
+
+
 def test_large_flat_facets_are_split_where_the_ply_bridges():
     lines = np.array([-40.0, 0.0, 40.0])
     surface = shapes.grid_surface(lambda x, y: abs(x), lines, lines)
