@@ -64,21 +64,22 @@ def test_a_neutral_effect_changes_nothing_at_all(name):
     assert neutral.effects == ()
 
 
+SHOWS = {
+    "locking": {"angle": 10.0},
+    "crossing-slip": {"share": 0.2, "onset": 5.0},
+}  # typical ones are beyond this part
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_a_typical_effect_changes_something_and_is_named_by_the_net(name):
     effect = gd.effects.find(name)
-    values = {p.name: p.typical for p in effect.parameters} | {
-        "locking": {"angle": 10.0},
-        "crossing-slip": {"onset": 5.0},
-    }.get(name, {})
-    part = CAP.flipped() if name == "bridging" else CAP  # a bowl, tighter than the ball
-    values = {"radius": 100.0} if name == "bridging" else values
-    if name == "bridging":
-        with pytest.raises(gd.EffectError):  # a whole bowl is tighter than the ball everywhere
-            gd.drape(part, TOP, effects=[effect(**values)], project=True)
-        return
-    plain = gd.drape(part, TOP, 10.0, 6.0, project=True)
-    net = gd.drape(part, TOP, 10.0, 6.0, effects=[effect(**values)], project=True)
+    values = SHOWS.get(name, {p.name: p.typical for p in effect.parameters})
+    valley = shapes.grid_surface(
+        lambda x, y: 0.1 * x**2 + 0.02 * y**2, np.linspace(-20, 20, 41), np.linspace(-20, 20, 41)
+    )
+    part, origin = (valley, (6.0, 0.0, 3.6)) if name == "bridging" else (CAP, TOP)
+    plain = gd.drape(part, origin, 10.0, 6.0, project=True)
+    net = gd.drape(part, origin, 10.0, 6.0, effects=[effect(**values)], project=True)
     assert net.effects[0].values == values
     same = plain.points.shape == net.points.shape and np.allclose(plain.points, net.points, atol=1e-6, equal_nan=True)
     assert not same or not np.allclose(plain.shear, net.shear, atol=1e-6, equal_nan=True)

@@ -127,6 +127,13 @@ def test_a_ball_that_fits_nowhere_is_refused():
         closed_points(shapes.sphere_cap(30.0, 80.0, 3.0).flipped(), 60.0)
 
 
+def test_a_surface_is_made_once_for_a_fit_that_drapes_on_it_again():
+    surface = groove(41, abs)
+    bridged = gd.effects.make("bridging", radius=15.0)
+    assert bridged.on_surface(surface) is gd.effects.make("bridging", radius=15.0).on_surface(surface)
+    assert bridged.on_surface(surface) is not gd.effects.make("bridging", radius=16.0).on_surface(surface)
+
+
 def test_bridging_before_thickness_whatever_order_they_are_given_in():
     surface = groove(81, abs)
     one = drape(surface, "bridging:radius=20", "thickness:offset=3", origin=(30.0, 0.0, 30.0))
