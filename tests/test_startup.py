@@ -18,7 +18,8 @@ except SystemExit as end:
     assert not end.code, end.code
 print("loaded:", [name for name in {heavy} if name in sys.modules])
 """
-ALL = [["--help"], ["--version"], *([name, "--help"] for name in ("drape", "compare", "check", "diff", "sample"))]
+COMMANDS = ("drape", "compare", "diagnose", "improve", "blind", "effects", "check", "diff", "sample")
+ALL = [["--help"], ["--version"], *([name, "--help"] for name in COMMANDS)]
 
 
 def _run(code: str) -> str:

@@ -25,7 +25,7 @@ WIDTH = 100
 def effects(name: str | None, plugins: tuple[Path, ...], folder: Path | None, as_json: bool) -> None:
     """List the effects, or explain the effect NAME: physics, equation, parameters, source.
 
-    With -o a picture shows how it moves the crossings of a net on a bump and changes their shear, at typical values
+    With -o a picture shows how it moves the crossings of a net on a bump and changes their shear, at usual values
     or at those of NAME:PARAMETER=VALUE,...
 
     \b
@@ -53,14 +53,14 @@ def effects(name: str | None, plugins: tuple[Path, ...], folder: Path | None, as
 
 
 def _draw(text: str, folder: Path) -> dict[str, Path]:
-    """Draw the signature of an effect, at typical values where none are given."""
+    """Draw the signature of an effect, at values that show on the sample where none are given."""
     from geomdrap import effects as library
-    from geomdrap.export.signature import write_signature
+    from geomdrap.export.signature import shown_values, write_signature
     from geomdrap.export.whole import check_writable
 
     effect = library.parse(text)
     if effect.is_neutral:
-        effect = type(effect)(**{p.name: p.typical for p in effect.parameters})
+        effect = type(effect)(**shown_values(effect))
     check_writable(folder)
     folder.mkdir(parents=True, exist_ok=True)
     return {"signature": write_signature(effect, folder)}

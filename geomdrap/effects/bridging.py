@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.effects.derived import derived
 from geomdrap.effects.rolling_ball import closed_points
 from geomdrap.errors import EffectError
 from geomdrap.fishnet import Effect, Parameter
@@ -38,12 +39,16 @@ class Bridging(Effect):
     def on_surface(self, surface: Surface) -> Surface:
         """The tool, closed by a ball."""
         radius = self.values["radius"]
+        return derived(surface, self.name, radius, lambda: closed_surface(surface, radius))
+
+
+def closed_surface(surface: Surface, radius: float) -> Surface:
+    """The part closed by a ball of ``radius`` mm, its large facets split in hollows; itself if it has none."""
+    closed = closed_points(surface, radius)
+    if _longest_lifted(surface, closed) > FINE * radius:
+        surface = _split(surface, FINE * radius)
         closed = closed_points(surface, radius)
-        longest = _longest_lifted(surface, closed)
-        if longest > FINE * radius:
-            surface = _split(surface, FINE * radius)
-            closed = closed_points(surface, radius)
-        return surface.moved(closed) if (closed != surface.points).any() else surface
+    return surface.moved(closed) if (closed != surface.points).any() else surface
 
 
 def _longest_lifted(surface: Surface, closed: np.ndarray) -> float:

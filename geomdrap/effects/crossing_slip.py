@@ -47,7 +47,9 @@ class CrossingSlip(Effect):
         return self.values["share"] == 0.0
 
     def on_net(self, net: Net) -> Net:
-        """The net with crossings that have slid."""
+        """The net with crossings that have slid; the same net where no shear is beyond the onset."""
+        if not np.nanmax(np.abs(net.cell_shear), initial=0.0) > self.values["onset"]:
+            return net
         problem = pose(net, Law(ratio=1.0, piece=SLIDING))
         shear = np.nan_to_num(net.cell_shear)
         left = np.abs(shear) - self.values["share"] * np.maximum(np.abs(shear) - self.values["onset"], 0.0)

@@ -16,7 +16,9 @@ class Locking(Effect):
     physics = (
         "Yarns turn at the crossings until they lie side by side; from there on they would have to be squeezed. "
         "Shear stops near that angle, neighbouring cells shear more, yarns stretch or slide, and finally the ply "
-        "wrinkles, which a net on the tool does not show. Where the geometric net stays below the angle it says nothing."
+        "wrinkles, which a net on the tool does not show. The ratio is that of shear-stiffness where that is given "
+        "as well; alone it is 0.001, without which many nets would do. On a symmetric part the least net may not be "
+        "symmetric; the one found keeps the symmetry."
     )
     source = "locking after P. Boisse et al., Composites Sci. Tech. 71 (2011); penalty as stiff as the yarns"
     stage = "fabric"

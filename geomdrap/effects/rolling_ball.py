@@ -45,7 +45,7 @@ def closed_points(surface: Surface, radius: float) -> np.ndarray:
     tool = _with_skirt(surface, SKIRT * radius)
     centre = points + radius * surface.vertex_normals
     room = radius * _least_cosine(surface) * (1.0 - TOUCH)
-    lifted = np.flatnonzero(tool.query(centre).distance < room)
+    lifted = np.flatnonzero(tool.query(centre).distance < room)  # whichever side of it is in the way
     out = points.copy()
     if len(lifted) == 0:
         return out
@@ -58,8 +58,23 @@ def closed_points(surface: Surface, radius: float) -> np.ndarray:
     return out
 
 
-def _with_skirt(surface: Surface, width: float) -> NearestTree:
-    """The part for queries of nearest points, with a strip beyond its rim that goes on in the plane of the facets."""
+class Tool(NearestTree):
+    """A part for queries of nearest points; it knows on which side of it a point lies."""
+
+    def __init__(self, points: np.ndarray, triangles: np.ndarray) -> None:
+        super().__init__(points, triangles)
+        a, b, c = points[triangles].swapaxes(0, 1)
+        self.normals = np.cross(b - a, c - a)
+
+    def clearance(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Nearest points (k, 3) to points (k, 3), and their distances (k,), negative behind the tool."""
+        near = self.query(points)
+        behind = ((points - near.point) * self.normals[near.face]).sum(axis=1) < 0.0
+        return near.point, np.where(behind, -near.distance, near.distance)
+
+
+def _with_skirt(surface: Surface, width: float) -> Tool:
+    """The part with a strip beyond its rim that goes on in the plane of the facets."""
     f, k = np.nonzero(surface.neighbours < 0)
     a, b = surface.triangles[f, k], surface.triangles[f, (k + 1) % 3]
     along = surface.points[b] - surface.points[a]
@@ -72,20 +87,20 @@ def _with_skirt(surface: Surface, width: float) -> NearestTree:
     beyond = surface.points[rim] + width * way[rim] / np.maximum(length, 1e-12)
     c, d = (len(surface.points) + part for part in np.split(place, 2))
     strip = np.vstack([np.column_stack([b, a, c]), np.column_stack([b, c, d])])
-    return NearestTree(np.vstack([surface.points, beyond]), np.vstack([surface.triangles, strip]))
+    return Tool(np.vstack([surface.points, beyond]), np.vstack([surface.triangles, strip]))
 
 
 def _allowed_centres(
-    surface: Surface, tool: NearestTree, radius: float, over_vertices: np.ndarray, lifted: np.ndarray
+    surface: Surface, tool: Tool, radius: float, over_vertices: np.ndarray, lifted: np.ndarray
 ) -> np.ndarray:
     """For each lifted vertex the nearest centre at which a ball rests on the part without cutting it (k, 3)."""
     from scipy.spatial import cKDTree
 
     over_facets = surface.points[surface.triangles].mean(axis=1) + radius * surface.normals
-    free = tool.query(over_facets).distance >= radius * (1.0 - TOUCH)
     resting = np.ones(len(over_vertices), bool)
     resting[lifted] = False
-    centres = np.vstack([over_facets[free], over_vertices[resting]])
+    centres = np.vstack([over_facets, over_vertices[resting]])
+    centres = centres[tool.clearance(centres)[1] >= radius * (1.0 - TOUCH)]
     if len(centres) == 0:
         raise EffectError(
             f"effect bridging: a ball of radius {radius:g} mm touches {surface.source} nowhere without cutting it; "
@@ -107,15 +122,15 @@ def _least_cosine(surface: Surface) -> np.ndarray:
     return np.where(least < SMOOTH_COSINE, 1.0, least)
 
 
-def _nearest_centres(tool: NearestTree, radius: float, p: np.ndarray, start: np.ndarray) -> np.ndarray:
+def _nearest_centres(tool: Tool, radius: float, p: np.ndarray, start: np.ndarray) -> np.ndarray:
     """The allowed centres (k, 3) nearest to points (k, 3), from allowed ones."""
     c, trial = start.copy(), start.copy()
     touched = np.full((len(p), KEPT, 3), np.inf)
     todo = np.arange(len(p))
     for _ in range(ROUNDS):
-        near = tool.query(trial[todo])
+        near, distance = tool.clearance(trial[todo])
         here = (c[todo], trial[todo], touched[todo])
-        going = exchange(p[todo], *here, near.point, near.distance, radius)
+        going = exchange(p[todo], *here, near, distance, radius)
         c[todo], trial[todo], touched[todo] = here
         todo = todo[going]
         if len(todo) == 0:
@@ -136,8 +151,8 @@ def exchange(
     """One round for k points p (k, 3): which of them go on (k,).
 
     A ``trial`` (k, 3) whose nearest tool point ``near`` (k, 3) keeps its ``distance`` (k,) becomes the centre ``c``;
-    that point is among those that the next trial keeps away from, ``touched`` (k, KEPT, 3). It ends where an
-    allowed trial has not moved.
+    that point is among those that the next trial keeps away from, ``touched`` (k, KEPT, 3). A trial behind the tool,
+    its distance negative, is taken back half the way. It ends where an allowed trial has not moved.
     """
     going = np.ones(len(p), np.bool_)
     for n in range(len(p)):
@@ -147,6 +162,9 @@ def exchange(
             if (step**2).sum() < (SETTLED * radius) ** 2 and np.isfinite(touched[n, 0, 0]):
                 going[n] = False
                 continue
+        elif distance[n] < 0.0:
+            trial[n] = c[n] + 0.5 * step
+            continue
         slot, most = 0, -1.0
         for m in range(KEPT):
             away = np.sqrt(((touched[n, m] - c[n]) ** 2).sum())

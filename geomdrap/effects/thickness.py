@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from geomdrap.effects.derived import derived
 from geomdrap.effects.parallel import parallel_surface
 from geomdrap.fishnet import Effect, Parameter
 from geomdrap.surface import Surface
@@ -27,4 +28,5 @@ class Thickness(Effect):
 
     def on_surface(self, surface: Surface) -> Surface:
         """The parallel surface."""
-        return parallel_surface(surface, self.values["offset"], self.name)
+        offset = self.values["offset"]
+        return derived(surface, self.name, offset, lambda: parallel_surface(surface, offset, self.name))

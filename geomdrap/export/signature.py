@@ -19,6 +19,17 @@ HALF, HEIGHT, WIDTH = (
 )  # mm: half a side of the sample, and of its bump the height and standard width
 SEED, HEADING = (12.0, 6.0, 57.0), 15.0  # off the symmetry of the sample, on which several effects would not show
 
+SHOWN = {  # where typical values would not show on the bump
+    "bridging": {"radius": 120.0},
+    "locking": {"angle": 20.0},
+    "crossing-slip": {"share": 0.3, "onset": 15.0},
+}
+
+
+def shown_values(effect: Effect) -> dict[str, float]:
+    """Values at which an effect shows on the sample: typical ones, mostly."""
+    return {p.name: p.typical for p in effect.parameters} | SHOWN.get(effect.name, {})
+
 
 def write_signature(effect: Effect, folder: Path) -> Path:
     """Draw how an effect moves the crossings of a net on a bump and changes their shear; the file."""

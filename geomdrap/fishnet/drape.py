@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 FAR = 1e5  # part's diagonals from the origin: beyond, rounding reaches what ``TIE`` tells apart
-AXIS_ROUNDS, AXIS_STRAIN = 6, 1e-6  # marches until a sliding weft generator has its length: one, without skew
+AXIS_ROUNDS, AXIS_STRAIN = 10, 1e-8  # marches until a sliding weft generator has its length: one, without skew
 SPREAD = 2.0  # cells: the facets' curvature is spread no further, which is below what the net resolves
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 DEFAULT_RATIO = 0.003  # shear stiffness where only its asymmetry is given
-SOFT_RATIO = 1e-6  # shear stiffness where only a locking angle is given
+SOFT_RATIO = 1e-3  # shear stiffness where only a locking angle is given: with none, many nets are minimal
 LOCK_STIFFNESS = 1.0  # of the yarns: resistance to shear beyond the locking angle
 BALANCED = 1e-6  # of the largest forces at a node: what may be left of them
 GOOD_ENOUGH = 1e-3  # beyond, a warning is given
@@ -44,7 +44,8 @@ class Problem:
     """What is held fixed while a net relaxes; arrays as in ``relax_energy``.
 
     ``x0`` (nu, nv, 3) is the geometric net, ``number`` (nu, nv) of the nodes that move, -1 for others; ``fixed`` node
-    and ``guided`` node, which moves only in the plane through the seed across ``side``.
+    and ``guided`` node, which moves only in the plane through the seed across ``side``, and where they are, ``held``
+    (2, 3) mm.
     """
 
     surface: Surface
@@ -58,6 +59,7 @@ class Problem:
     number: np.ndarray
     fixed: tuple[int, int]
     guided: tuple[int, int]
+    held: np.ndarray
     side: np.ndarray
 
 
@@ -133,6 +135,7 @@ def pose(net: Net, law: Law) -> Problem:
         number=number,
         fixed=(i, j),
         guided=(beside[0], j),
+        held=lattice[[i, beside[0]], j],
         side=np.cross(net.normal0, net.warp0),
     )
 
@@ -141,8 +144,8 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
     """Nodes of least energy, from ``start`` (nu, nv, 3) mm."""
     moves = problem.number >= 0
     x = np.where(moves[..., None], start, 0.0)
-    for node in (problem.fixed, problem.guided):  # what is held, or held to a plane, starts where it is held
-        x[node] = problem.x0[node]
+    for node, place in zip((problem.fixed, problem.guided), problem.held, strict=True):
+        x[node] = place
     footing = stand(problem.surface, problem.corner_normals, x[moves])
     x[moves] = footing.lifted
     now, damping, stuck = _energy(problem, x), 0.0, 0
@@ -151,7 +154,7 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
     for n in range(ROUNDS):
         equations = _equations(problem, x, footing, full)
         stuck = stuck + 1 if equations.unrest > 0.5 * best.unrest else 0
-        if equations.unrest < best.unrest:
+        if equations.unrest < best.unrest or now < best.energy * (1.0 - UNEVEN):
             best = Relaxed(x, footing, now, equations.unrest, n)
         if best.unrest < BALANCED or (best.unrest < GOOD_ENOUGH and stuck > PATIENCE):
             break

@@ -11,16 +11,18 @@ from geomdrap.fishnet.grid import Status
 from geomdrap.fishnet.net import cells_of
 from geomdrap.fishnet.relax import GOOD_ENOUGH
 
+ON_RIM = 1e-6  # of the pitch: a node no further beyond the rim is on it
+
 if TYPE_CHECKING:
     from geomdrap.fishnet.net import Net
     from geomdrap.fishnet.relax import Problem, Relaxed
 
 
 def as_net(net: Net, problem: Problem, found: Relaxed) -> Net:
-    """The net with its nodes where they came to rest; those that came to lie beyond the rim are off the part."""
+    """The net with its nodes where they came to rest; those beyond the rim, or without a cell, are off the part."""
     moves = problem.number >= 0
     off = np.ones(moves.shape, bool)
-    off[moves] = found.footing.outside > 1e-9 * net.pitch
+    off[moves] = found.footing.outside > ON_RIM * net.pitch
     lattice = np.full(found.x.shape, np.nan)
     lattice[moves] = found.footing.point
     lattice[off] = np.nan

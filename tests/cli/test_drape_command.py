@@ -58,6 +58,7 @@ def test_options_arrive_as_values(run: Run, asked: dict[str, Any]) -> None:
             "--flip",
             "--project",
         ),
+        *("--effect", "slip:coefficient=0.2", "--effect", "bridging:radius=9", "--model", "m.toml", "--plugin", "p.py"),
         *SOME,
     )
     assert result.exit_code == 0, result.stderr
@@ -74,6 +75,9 @@ def test_options_arrive_as_values(run: Run, asked: dict[str, Any]) -> None:
         "tolerance": 0.1,
         "flip": True,
         "project": True,
+        "effect_texts": ("slip:coefficient=0.2", "bridging:radius=9"),
+        "model": Path("m.toml"),
+        "plugins": (Path("p.py"),),
     }
 
 

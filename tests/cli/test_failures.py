@@ -64,7 +64,7 @@ def test_a_bug_shows_its_traceback_on_request(run: Run, monkeypatch: pytest.Monk
 def test_an_unknown_command_names_those_there_are(error_of: Callable[..., str]) -> None:
     message = error_of("drap", "part.stl")
     assert "no command 'drap'" in message
-    assert "drape, check, diff, sample" in message
+    assert "drape, check, diff, effects, sample" in message
 
 
 @pytest.mark.parametrize(

@@ -101,6 +101,7 @@ def made_up_drape(
         normal0=np.array([0, 0, 1.0]),
         angle=0.0,
         pitch=pitch,
+        effects=(),
         reach=None,
         u=u,
         v=v,

@@ -40,6 +40,7 @@ def square_ply(cells: int = 4, pitch: float = 10.0, facets: Surface | None = Non
         normal0=np.array([0.0, 0.0, 1.0]),
         angle=30.0,
         pitch=pitch,
+        effects=(),
         u=line,
         v=line,
         points=points,

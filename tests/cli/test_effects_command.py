@@ -1,0 +1,122 @@
+"""``geomdrap effects``, and effects on the command line of ``drape``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import geomdrap as gd
+from geomdrap.cli import cli
+from geomdrap.effects import registry
+
+PLUGIN = Path(__file__).parents[2] / "samples" / "my_effect.py"
+
+
+@pytest.fixture(autouse=True)
+def _nothing_stays_registered(monkeypatch):
+    monkeypatch.setattr(registry, "_REGISTERED", {})
+
+
+@pytest.fixture
+def part(tmp_path):
+    return gd.surface.samples.write("hemisphere", tmp_path, 2000)[0]
+
+
+def run(*arguments):
+    return CliRunner().invoke(cli, [str(a) for a in arguments], prog_name="geomdrap")
+
+
+def test_the_table_names_all_effects_with_their_units():
+    lines = run("effects").stdout.splitlines()
+    assert [line.split()[0] for line in lines] == list(registry.LIBRARY)
+    assert "curvature_warp [1/m], curvature_weft [1/m]" in "\n".join(lines)
+
+
+def test_a_page_tells_physics_equation_bounds_and_source():
+    text = run("effects", "slip").stdout
+    for word in ("physics", "equation", "source", "looks like", "0 to 1, typical 0.3"):
+        assert word in text
+
+
+def test_json_holds_the_same():
+    document = json.loads(run("effects", "thickness", "--json").stdout)
+    assert document["schema"] == "geomdrap.effects/1"
+    (effect,) = document["effects"]
+    assert effect["parameters"][0]["unit"] == "mm"
+    assert len(json.loads(run("effects", "--json").stdout)["effects"]) == len(registry.LIBRARY)
+
+
+def test_a_picture_of_the_signature_is_written(tmp_path):
+    done = run("effects", "weave-skew:skew=3", "-o", tmp_path / "new")
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / "new" / "signature-weave-skew.png").stat().st_size > 20_000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["effects", "slide"], "there is no effect 'slide'; the effects are"),
+        (["effects", "-o", "x"], "give its NAME"),
+        (["effects", "--plugin", "missing.py"], "missing.py: there is no such file"),
+    ],
+)
+def test_what_cannot_be_done_is_said_in_one_line(arguments, words):
+    done = run(*arguments)
+    assert done.exit_code == 2
+    assert words in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_drape_says_which_effects_acted(part, tmp_path):
+    model = tmp_path / "model.toml"
+    gd.effects.write_model(model, [gd.effects.make("placement", du=1.5)])
+    chosen = [
+        "--plugin",
+        PLUGIN,
+        "--effect",
+        "oven-shrinkage:strain=0.01",
+        "--effect",
+        "slip:coefficient=0.2",
+        "--model",
+        model,
+    ]
+    done = run("drape", part, "--pitch", 12, *chosen, "--outputs", "none", "--json")
+    assert done.exit_code == 0, done.output
+    acted = {e["name"]: e["values"] for e in json.loads(done.stdout)["effects"]}
+    assert acted == {
+        "placement": {"du": 1.5, "dv": 0.0, "dangle": 0.0},
+        "oven-shrinkage": {"strain": 0.01},
+        "slip": {"coefficient": 0.2},
+    }
+
+
+def test_a_drape_without_effects_says_so(part):
+    assert json.loads(run("drape", part, "--pitch", 12, "--outputs", "none", "--json").stdout)["effects"] == []
+
+
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        (["--effect", "slip:coefficient=2"], "coefficient must be a number from 0 to 1"),
+        (["--effect", "slip=2"], "there is no effect 'slip=2'"),
+        (["--model", "missing.toml"], "missing.toml cannot be read"),
+    ],
+)
+def test_effects_that_cannot_be_meant_end_in_one_line(part, option, words):
+    done = run("drape", part, *option)
+    assert done.exit_code == 2
+    assert words in done.stderr
+
+
+def test_the_sample_plugin_shrinks_the_net(part):
+    surface = gd.read_surface(part)
+    gd.effects.load_plugin(PLUGIN)
+    plain, shrunk = (
+        gd.drape(surface, pitch=10.0, effects=e) for e in ([], [gd.effects.make("oven-shrinkage", strain=0.02)])
+    )
+    ends = [net.interpolate([50.0], [0.0])[0][0] - net.origin for net in (plain, shrunk)]
+    assert (ends[1] ** 2).sum() < (ends[0] ** 2).sum()
+    assert shrunk.sides[0].max() == pytest.approx(9.8)
