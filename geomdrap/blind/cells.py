@@ -70,8 +70,8 @@ def _fourth(
             grown = weft / np.sqrt(1.0 - _sine(d - a, b - a, from_left, from_below) ** 2) ** slip
         gaps = (np.sum(from_left**2, 1) - warp**2, np.sum(from_below**2, 1) - grown**2)
         rows = np.stack([from_left, from_below], axis=1)
-        columns = (np.einsum("nrc,nc->nr", rows, t) for t in (px, py))
-        step = solve2(*columns, 0.5 * np.stack(gaps, axis=1))
+        by_x, by_y = (np.einsum("nrc,nc->nr", rows, t) for t in (px, py))
+        step = solve2(by_x, by_y, 0.5 * np.stack(gaps, axis=1))
         xy = xy - np.clip(step, -0.5 * np.max(warp), 0.5 * np.max(warp))
         if not np.nanmax(np.abs(step), initial=0.0) > 1e-9 * np.max(warp):
             break

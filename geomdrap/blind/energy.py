@@ -16,7 +16,7 @@ from geomdrap.blind.terms import Array
 LOCKED, SOFT = 0.5, 0.5
 """Stiffness beyond the locking angle, energy per rad² and corner: sides give way before the shear does; and over
 how many degrees it sets in."""
-RELIEF, RELIEF_SIDES, KEPT = 1.0, 3e-3, 1.0
+RELIEF, RELIEF_SIDES, KEPT = 1.0, 3e-3, 300.0
 """Slip at the crossings: energies of missing the relieved shear, of uneven sides and of a yarn's total length."""
 HELD = 1e3  # weight of what is held: the heading of the first warp side
 
@@ -54,7 +54,8 @@ class Block:
 
 def topology(known: NDArray[np.bool_]) -> Topology:
     """Find the sides, corners and bends of the net whose nodes are ``known`` (n, n)."""
-    number = np.where(known, np.cumsum(known).reshape(known.shape) - 1, -1)
+    number: Index = np.full(known.shape, -1, dtype=np.intp)
+    number[known] = np.arange(np.count_nonzero(known))
     rows, columns = np.indices(known.shape)
     warp = np.stack([number[:-1], number[1:]], axis=-1).reshape(-1, 2)
     weft = np.stack([number[:, :-1], number[:, 1:]], axis=-1).reshape(-1, 2)
@@ -114,7 +115,9 @@ def scaled(block: Block, factor: Array | float, shift: Array | float = 0.0) -> B
     return Block(factor * (block.value - shift), block.nodes, factor[:, None, None] * block.slope)
 
 
-def blocks(p: Array, normal: Array, net: Topology, rest: Array, side: float, recipe: Recipe, aim: Array) -> list[Block]:
+def blocks(
+    p: Array, normal: Array, net: Topology, rest: Array, side: float, recipe: Recipe, aim: Array
+) -> list[Block]:
     """All residuals of the recipe at the nodes ``p`` (n, 3); ``aim`` (c,): sin γ that slipping crossings go for."""
     shear = sines(p, net.corners, net.sign)
     if recipe.share:

@@ -16,6 +16,7 @@ from geomdrap.blind.tools import CONCAVE, TOOLS
 
 EVERYWHERE = tuple(TOOLS)
 SHEARED = ("dome", "saddle", "double-bump", "ridge", "pan")
+RELAXING = ("dome", "saddle", "double-bump", "ridge")
 MUCH_SHEARED = ("dome", "saddle", "double-bump")
 ASYMMETRIC_RATIO = 0.003  # shear stiffness of the nets whose stiffness depends on the sign of the shear
 LOCKED_RATIO = 1e-4  # so little that shear below the locking angle is all but free
@@ -70,7 +71,7 @@ def _thickness(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[
 
 
 def _bridging(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[str, float], dict[str, Any]]:
-    radius = amount * rng.uniform(45.0, 75.0)
+    radius = amount * rng.uniform(50.0, 80.0)
     return {"radius": radius}, {"ball": radius}
 
 
@@ -85,7 +86,7 @@ def _asymmetry(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[
 
 
 def _locking(rng: np.random.Generator, amount: float, shear: float) -> tuple[dict[str, float], dict[str, Any]]:
-    lock = shear * (1.0 - min(amount * rng.uniform(0.2, 0.45), 0.6))
+    lock = shear * (1.0 - min(amount * rng.uniform(0.15, 0.4), 0.6))
     return {"angle": lock}, {"lock": lock, "stiffness": LOCKED_RATIO}
 
 
@@ -110,7 +111,7 @@ def _order(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[str,
 
 
 def _bending(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[str, float], dict[str, Any]]:
-    length = amount * rng.uniform(4.0, 10.0)
+    length = amount * rng.uniform(3.0, 7.0)
     return {"length": length}, {"bending": length**2, "stiffness": LOCKED_RATIO}
 
 
@@ -127,14 +128,14 @@ HIDDEN: dict[str, Hidden] = {
     "slip": Hidden(_slip, MUCH_SHEARED),
     "thickness": Hidden(_thickness, ("dome", "double-bump", "pan", "ridge", "valley")),
     "bridging": Hidden(_bridging, CONCAVE),
-    "shear-stiffness": Hidden(_stiffness, SHEARED),
+    "shear-stiffness": Hidden(_stiffness, RELAXING),
     "locking": Hidden(_locking, MUCH_SHEARED),
     "springback": Hidden(_springback, SHEARED),
-    "shear-asymmetry": Hidden(_asymmetry, SHEARED),
+    "shear-asymmetry": Hidden(_asymmetry, RELAXING),
     "crossing-slip": Hidden(_crossing, MUCH_SHEARED),
     "gravity-sag": Hidden(_sag, library=False),
     "drape-order": Hidden(_order, library=False),
-    "yarn-bending": Hidden(_bending, MUCH_SHEARED, library=False),
+    "yarn-bending": Hidden(_bending, ("dome", "saddle"), library=False),
     "heat-growth": Hidden(_heat, library=False),
 }
 

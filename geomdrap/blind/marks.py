@@ -5,12 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geomdrap.blind.ply import Ply
 from geomdrap.blind.recipe import Recipe
 from geomdrap.blind.scatter import Shift
 from geomdrap.blind.shear import angle_between, differences, node_shear
 from geomdrap.blind.terms import Array
+
+Index = NDArray[np.intp]
 
 SPACING = 16.0  # mm, of the marks in the flat fabric
 
@@ -25,19 +28,20 @@ class Marks:
     warp: Array
     weft: Array
 
-    def only(self, chosen: Array) -> Marks:
-        """Give the marks of a mask or of indices."""
+    def only(self, chosen: Index) -> Marks:
+        """Give the marks with these indices."""
         return Marks(*(getattr(self, name)[chosen] for name in self.__dataclass_fields__))
 
 
-def _at(ply: Ply, spacing: float) -> tuple[Array, Array]:
+def _at(ply: Ply, spacing: float) -> tuple[Index, Index]:
     """Indices of the nodes that carry a mark and have all neighbours."""
     step = round(spacing / (ply.u[1] - ply.u[0]))
     middle = len(ply.u) // 2
     complete = np.isfinite(node_shear(ply.points))
     marked = np.zeros_like(complete)
     marked[middle % step :: step, middle % step :: step] = True
-    return np.nonzero(complete & marked)
+    i, j = np.nonzero(complete & marked)
+    return i, j
 
 
 def fabric_points(ply: Ply, spacing: float = SPACING) -> Array:
@@ -103,10 +107,10 @@ def measured(marks: Marks, rng: np.random.Generator, sigma_xyz: float, sigma_she
     return Marks(marks.uv, points, shear, warp, weft)
 
 
-def spoilt(marks: Marks, rng: np.random.Generator, share: float) -> tuple[Marks, Array]:
+def spoilt(marks: Marks, rng: np.random.Generator, share: float) -> tuple[Marks, Index]:
     """Make a ``share`` of the marks outliers, 3 to 10 mm and 5 to 20° off; also gives their indices."""
     n = len(marks.shear)
-    bad = np.sort(rng.permutation(n)[: round(share * n)])
+    bad = np.sort(rng.permutation(n)[: round(share * n)]).astype(np.intp)
     way = _unit(rng.normal(size=(len(bad), 3)))
     points, shear = marks.points.copy(), marks.shear.copy()
     points[bad] += way * rng.uniform(3.0, 10.0, (len(bad), 1))

@@ -99,7 +99,7 @@ def _curvatures(recipe: Recipe) -> Array:
 def _strained(recipe: Recipe, axis: int, side: float, m: int) -> Array:
     """Lengths (m,) mm of successive sides from the axis through the seed outward."""
     middle = side * (np.arange(m) + 0.5)
-    return side * (1.0 + recipe.extension[axis] + recipe.gradient[axis] * middle)
+    return np.asarray(side * (1.0 + recipe.extension[axis] + recipe.gradient[axis] * middle))
 
 
 def _in_quadrants(axes: Array) -> tuple[Array, Array]:

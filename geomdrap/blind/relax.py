@@ -24,7 +24,7 @@ SETTLED_LOCKED = 1e-3  # locked nets creep among states of nearly the same energ
 def relaxed(sheet: Sheet, plan: Array, recipe: Recipe, side: float) -> Array:
     """Give the plan points (n, n, 2) of least energy, from the geometric net ``plan``.
 
-    GeomdrapError if no minimum is found in STEPS steps.
+    NoMinimumError if no minimum is found in STEPS steps.
     """
     known = np.isfinite(plan[..., 0])
     net = topology(known)
@@ -33,6 +33,10 @@ def relaxed(sheet: Sheet, plan: Array, recipe: Recipe, side: float) -> Array:
     moved = plan.copy()
     moved[known] = _minimum(problem, plan[known])
     return moved
+
+
+class NoMinimumError(GeomdrapError):
+    """The relaxed net did not come to rest; a blind set is drawn anew then."""
 
 
 class _Problem:
@@ -143,7 +147,7 @@ def _minimum(problem: _Problem, xy: Array) -> Array:
             return xy
         else:
             damping *= 10.0
-    raise GeomdrapError("the relaxed net of this blind set found no minimum; take another --seed")
+    raise NoMinimumError("the relaxed net of this blind set found no minimum; take another --seed")
 
 
 def _step(normal: Any, along: Any, gradient: Array, damping: float, seed: int) -> Array:

@@ -81,8 +81,7 @@ def added(terms: Sequence[Term]) -> Term:
     def term(x: Array, y: Array) -> tuple[Array, ...]:
         total = [np.zeros_like(x) for _ in range(6)]
         for one in terms:
-            for sum_, value in zip(total, one(x, y), strict=True):
-                sum_ += value
+            total = [sum_ + value for sum_, value in zip(total, one(x, y), strict=True)]
         return tuple(total)
 
     return term

@@ -69,9 +69,9 @@ def _valley(rng: np.random.Generator, size: float) -> Tool:
 
 
 def _pan(rng: np.random.Generator, size: float) -> Tool:
-    slopes = rng.uniform(0.35, 0.85, 4)
+    slopes = rng.uniform(0.55, 0.95, 4)
     starts = size * rng.uniform(38.0, 62.0, 4)
-    width = size * rng.uniform(9.0, 13.0)
+    width = size * rng.uniform(7.0, 10.0)
     headings = (0.0, 90.0, 180.0, 270.0)
     walls = [ramp(m, at, width, h) for m, at, h in zip(slopes, starts, headings, strict=True)]
     return Tool("pan", added(walls), (size * 140.0, size * 140.0), concave=True)
