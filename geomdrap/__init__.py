@@ -13,30 +13,51 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "DrapeError": "errors",
+    "EffectError": "errors",
     "GeomdrapError": "errors",
+    "MeasurementError": "errors",
     "SurfaceError": "errors",
     "Surface": "surface",
     "read_surface": "surface",
     "shapes": "surface",
     "trace": "geodesic",
     "Effect": "fishnet",
+    "Parameter": "fishnet",
     "Fabric": "fishnet",
     "Net": "fishnet",
+    "Measurement": "measurement",
+    "read_measurement": "measurement",
+    "read_setup": "measurement",
+    "compare": "criticism",
+    "diagnose": "criticism",
+    "improve": "criticism",
     "drape": "fishnet",
     "evaluate": "fields",
 }
 
+_PACKAGES = ("effects",)
+
 __all__ = [
     "DrapeError",
     "Effect",
+    "EffectError",
     "Fabric",
     "GeomdrapError",
+    "Measurement",
+    "MeasurementError",
     "Net",
+    "Parameter",
     "Surface",
     "SurfaceError",
     "__version__",
+    "compare",
+    "diagnose",
     "drape",
+    "effects",
     "evaluate",
+    "improve",
+    "read_measurement",
+    "read_setup",
     "read_surface",
     "shapes",
     "trace",
@@ -45,6 +66,8 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Load a public name when it is first used, so that ``import geomdrap`` stays instant."""
+    if name in _PACKAGES:
+        return import_module(f"geomdrap.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module 'geomdrap' has no attribute {name!r}")
     return getattr(import_module(f"geomdrap.{_HOMES[name]}"), name)

@@ -13,3 +13,11 @@ class SurfaceError(GeomdrapError):
 
 class DrapeError(GeomdrapError):
     """The drape cannot start or cannot be carried out as asked (seed, heading, pitch, blank)."""
+
+
+class MeasurementError(GeomdrapError):
+    """A measured table or its set-up cannot be read, or does not fit the part."""
+
+
+class EffectError(GeomdrapError):
+    """An effect is unknown, its parameters are not what it takes, or it cannot act on this part."""

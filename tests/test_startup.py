@@ -18,7 +18,7 @@ except SystemExit as end:
     assert not end.code, end.code
 print("loaded:", [name for name in {heavy} if name in sys.modules])
 """
-ALL = [["--help"], ["--version"], *([name, "--help"] for name in ("drape", "check", "diff", "sample"))]
+ALL = [["--help"], ["--version"], *([name, "--help"] for name in ("drape", "compare", "check", "diff", "sample"))]
 
 
 def _run(code: str) -> str:

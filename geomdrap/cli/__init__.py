@@ -9,6 +9,9 @@ from geomdrap.cli.lazy import LazyGroup
 
 COMMANDS = {
     "drape": "Drape a part: net, shear map, flat pattern, statistics.",
+    "compare": "Hold a drape against measured points: where it fails, and by how much.",
+    "diagnose": "Say which physical effect a drape lacks, by measured points.",
+    "improve": "Add missing effects to a drape until it agrees with measured points.",
     "check": "Say whether a mesh is fit for draping, and what is wrong with it.",
     "diff": "Say what changed between two results (for golden files in CI).",
     "sample": "Write a sample part.",

@@ -82,6 +82,46 @@ class Origin(click.ParamType):
         return Triple().convert(value, param, ctx)
 
 
+class Pair(click.ParamType):
+    """One number, or two with a comma between: along warp and weft."""
+
+    def __init__(self, name: str, above: float = -math.inf):
+        self.name = name
+        self.number = Number(name, above=above)
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, float]:
+        """Give two floats, or fail with a sentence."""
+        if isinstance(value, tuple):
+            return value
+        parts = str(value).split(",")
+        if len(parts) not in (1, 2):
+            self.fail(f"'{value}' is not one number, or two with a comma, as in 16,16", param, ctx)
+        numbers = [self.number.convert(part.strip(), param, ctx) for part in parts]
+        return numbers[0], numbers[-1]
+
+
+class Mapping(click.ParamType):
+    """Names of columns: ``x=X,shear=Gamma``."""
+
+    name = "quantity=heading,..."
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> dict[str, str]:
+        """Give the headings by quantity, or fail with a sentence."""
+        if isinstance(value, dict):
+            return value
+        out: dict[str, str] = {}
+        for part in str(value).split(","):
+            quantity, sign, heading = (text.strip() for text in part.partition("="))
+            if not (quantity and sign and heading):
+                self.fail(f"'{part}' is not quantity=heading, as in x=X,shear=Gamma", param, ctx)
+            if quantity in out:
+                self.fail(f"'{quantity}' is named twice", param, ctx)
+            out[quantity] = heading
+        return out
+
+
 class Size(click.ParamType):
     """The blank: width times height, as in ``400x300``."""
 

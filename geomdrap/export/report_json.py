@@ -29,7 +29,7 @@ def as_dict(result: Drape, files: Mapping[str, str | Path] | None = None) -> dic
     what is not a number becomes None. Keys come in a fixed order.
     """
     net = result.net
-    return _plain(
+    return plain(
         {
             "schema": SCHEMA,
             "version": __version__,
@@ -89,12 +89,12 @@ def _fields(record: object, *names: str) -> dict[str, Any]:
     return {name: getattr(record, name) for name in names}
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Turn numpy values into JSON's own, floats rounded, −0 and NaN gone."""
     if isinstance(value, dict):
-        return {str(key): _plain(item) for key, item in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple, np.ndarray)):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     if isinstance(value, (bool, np.bool_)):
         return bool(value)
     if isinstance(value, (int, np.integer)):

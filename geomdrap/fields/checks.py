@@ -29,8 +29,9 @@ def edge_error(net: Net) -> float:
     """
     if not net.cell_valid.any():
         return 0.0
-    warp = np.linalg.norm(np.diff(net.points, axis=0), axis=2) / np.diff(net.u)[:, None]
-    weft = np.linalg.norm(np.diff(net.points, axis=1), axis=2) / np.diff(net.v)[None, :]
+    long, wide = net.sides or (np.diff(net.u)[:, None], np.diff(net.v)[None, :])
+    warp = np.linalg.norm(np.diff(net.points, axis=0), axis=2) / long
+    weft = np.linalg.norm(np.diff(net.points, axis=1), axis=2) / wide
     ok = net.cell_valid
     sides = np.concatenate([warp[:, :-1][ok], warp[:, 1:][ok], weft[:-1][ok], weft[1:][ok]])
     return float(max(sides.max() - 1.0, 0.0))
@@ -61,7 +62,7 @@ def curvature_residual(net: Net, trimmed: Trimmed) -> float | None:
     whole; None where there are none.
     """
     i0, j0 = (int(np.argmin(np.abs(x))) for x in (net.u, net.v))
-    if net.u[i0] != 0.0 or net.v[j0] != 0.0 or min(net.lattice_valid.shape) < 2 or net.fabric.weft_angle != 90.0:
+    if net.u[i0] != 0.0 or net.v[j0] != 0.0 or min(net.lattice_valid.shape) < 2 or not net.is_geodesic:
         return None
     total = _from_seed(_deficit_per_cell(net, trimmed), i0, j0)
     valid = net.cell_valid

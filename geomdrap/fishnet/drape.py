@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from geomdrap.errors import DrapeError, SurfaceError
 from geomdrap.fishnet import seed as seeds
-from geomdrap.fishnet.effect import Effect, after, before
+from geomdrap.fishnet.effect import Effect, fabric_with, in_order, net_with, shift_with, surface_with
 from geomdrap.fishnet.extent import Extent, first_extent, grow, sides
 from geomdrap.fishnet.fabric import Fabric
 from geomdrap.fishnet.front import branch_off, carry_front_on
-from geomdrap.fishnet.grid import PIECES, Grid, Status, empty_grid
+from geomdrap.fishnet.grid import PIECES, STRAIN, Grid, Status, empty_grid
 from geomdrap.fishnet.march import fill_quadrants, lay_generators
 from geomdrap.fishnet.net import Net, cells_of
 from geomdrap.fishnet.pitch import check_pitch, choose_pitch, coarse_facets
 from geomdrap.fishnet.place import APART, all_in_space, place_seed
 from geomdrap.fishnet.shear import shears, yarn_directions
+from geomdrap.fishnet.shift import Shift, displaced
+from geomdrap.fishnet.slide import fill_quadrants_sliding, strain_on_axis
 from geomdrap.geodesic.mesh import Mesh, mesh_of
 
 if TYPE_CHECKING:
@@ -28,6 +31,7 @@ if TYPE_CHECKING:
 
 
 FAR = 1e5  # part's diagonals from the origin: beyond, rounding reaches what ``TIE`` tells apart
+AXIS_ROUNDS, AXIS_STRAIN = 6, 1e-6  # marches until a sliding weft generator has its length: one, without skew
 SPREAD = 2.0  # cells: the facets' curvature is spread no further, which is below what the net resolves
 
 
@@ -55,39 +59,79 @@ def drape(
 
     Source: H. Borouchaki and A. Cherouat, GeomDrap (modified MOSAIC).
     """
-    surface, fabric = before(effects, surface, fabric or Fabric())
+    acting = in_order(effects)
+    fabric = fabric_with(acting, fabric or Fabric())
     if not math.isfinite(angle):
         raise DrapeError(f"the heading must be a finite number of degrees, not {angle}")
-    face, point, distance = seeds.locate(surface, origin)
+    tool, (face, point, distance) = surface, seeds.locate(surface, origin)
+    surface = surface_with(acting, tool)
+    if surface is not tool:
+        face, point, _ = seeds.locate(surface, point)
     part = surface.only_component(face)
     part.require_drapable()
     _require_digits(part)
     pitch, notes = (check_pitch(part, pitch), ()) if pitch is not None else choose_pitch(part)
-    _check_distance(surface, origin, distance, pitch, project)
+    _check_distance(tool, origin, distance, pitch, project)
     mesh = mesh_of(part.lidded, SPREAD * pitch)
-    heading = math.fmod(angle, 360.0)
-    start = seeds.plant(part, point, heading, mesh, reference, fabric.weft_angle)
+    start = _plant(part, point, math.fmod(angle, 360.0), mesh, reference, fabric, shift_with(acting, Shift()))
     extent = first_extent(part, start, pitch, reach)
     while True:
-        grid = _march(mesh, start, extent, pitch, fabric)
+        grid = _march_sliding(mesh, start, extent, pitch, fabric)
         larger = grow(extent, grid, pitch)
         if larger == extent:
             break
         extent = larger
     _require_cells(grid, part, pitch)
     net = _as_net(surface, part, start, angle, pitch, reach, fabric, extent, mesh, grid, notes)
-    return after(effects, net)
+    return replace(net_with(acting, net), effects=acting)
 
 
-def _march(mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric) -> Grid:
-    """Seed, generators (α-nodes), cells (β-nodes), and the front carried on."""
-    grid = empty_grid(*sides(extent, pitch), APART)
+def _plant(
+    part: Surface,
+    point: np.ndarray,
+    heading: float,
+    mesh: Mesh,
+    reference: Sequence[float] | None,
+    fabric: Fabric,
+    shift: Shift,
+) -> seeds.Seed:
+    """The seed at a point with the warp at a heading (degrees), or where it was really laid down."""
+
+    def plant(turn: float) -> seeds.Seed:
+        return seeds.plant(part, point, heading + turn, mesh, reference, fabric.weft_angle)
+
+    meant = plant(0.0)
+    return meant if shift == Shift() else displaced(shift, meant, plant, mesh, len(part.triangles))
+
+
+def _march_sliding(mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric) -> Grid:
+    """March; where yarns slip, again with the lengths that the cells beside it give to the weft generator."""
+    grid = _march(mesh, start, extent, pitch, fabric, 0.0)
+    if fabric.slip != 0.0:
+        for _ in range(AXIS_ROUNDS):
+            strain = strain_on_axis(grid, extent.west, fabric.slip)
+            if np.abs(strain - grid.node[extent.west, :, STRAIN]).max() < AXIS_STRAIN:
+                break
+            grid = _march(mesh, start, extent, pitch, fabric, strain)
+    return grid
+
+
+def _march(
+    mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric, axis: np.ndarray | float
+) -> Grid:
+    """Seed, generators (α-nodes), cells (β-nodes), and the front carried on; ``axis``: strains of the weft generator."""
+    grid = empty_grid(*sides(extent, pitch, fabric), APART)
     i0, j0 = extent.west, extent.south
+    grid.node[i0, :, STRAIN] = axis
     weft_rad = math.radians(fabric.weft_angle)
+    curvature = np.array([fabric.curvature_warp, fabric.curvature_weft])
     place_seed(mesh, grid, i0, j0, start.face, *_seed_in_frame(mesh, start), weft_rad)
-    lay_generators(mesh, grid, i0, j0, start.starts, start.places)
+    lay_generators(mesh, grid, i0, j0, start.starts, start.places, curvature)
     branch_off(mesh, grid, i0, j0, weft_rad)
-    fill_quadrants(mesh, grid, i0, j0)
+    if fabric.slip == 0.0:
+        fill_quadrants(mesh, grid, i0, j0)
+    else:
+        fill_quadrants_sliding(mesh, grid, i0, j0, fabric.slip)
     carry_front_on(mesh, grid, i0, j0)
     return grid
 
@@ -135,6 +179,15 @@ def _check_distance(surface: Surface, origin: seeds.Origin, distance: float, pit
         )
 
 
+def _sides_as_they_lie(grid: Grid, fabric: Fabric) -> tuple[np.ndarray, np.ndarray] | None:
+    """Lengths of warp pieces (nu - 1, nv) and weft pieces (nu, nv - 1), mm; None where they are the pitch."""
+    if not fabric.stretches:
+        return None
+    i0, i1, j0, j1 = (int(k) for k in grid.box[:4])
+    warp = np.broadcast_to(grid.sides_u[i0:i1, None], (i1 - i0, j1 - j0 + 1)).copy()
+    return warp, grid.sides_v[None, j0:j1] * (1.0 + grid.node[i0 : i1 + 1, j0:j1, STRAIN])
+
+
 def _as_net(
     surface: Surface,
     part: Surface,
@@ -165,7 +218,7 @@ def _as_net(
         face = np.where(over_hole, -1, face)
         valid = lattice_valid & np.isfinite(cells_of(points[..., 0])).all(axis=0)
     cell_shear, shear = shears(grid, i0, j0, valid)
-    if part is not surface:
+    if part is not surface:  # of its pieces one is draped
         others = surface.n_components - 1
         notes = (*notes, f"the part has {others + 1} separate pieces; the one with the origin is draped")
     return Net(
@@ -190,6 +243,7 @@ def _as_net(
         yarns=yarn_directions(mesh, grid, i0, i1 + 1, j0, j1 + 1),
         cell_shear=cell_shear,
         shear=shear,
+        sides=_sides_as_they_lie(grid, fabric),
         notes=notes,
         warnings=(*unit_hint(surface), *coarse_facets(part, pitch)),
     )

@@ -13,9 +13,11 @@ from geomdrap.errors import DrapeError
 from geomdrap.fishnet.grid import BYTES_PER_NODE, STATUS, Grid, Status
 
 if TYPE_CHECKING:
+    from geomdrap.fishnet.fabric import Fabric
     from geomdrap.fishnet.seed import Seed
     from geomdrap.surface import Surface
 
+LEAST_SIDE = 0.5  # of the pitch: a fabric that shrinks more is a wrong parameter
 SPARE = 1.3  # fabric is longer than its shadow on the tangent plane
 
 
@@ -76,9 +78,26 @@ def _require_memory(nodes: float, pitch: float) -> None:
         )
 
 
-def sides(extent: Extent, pitch: float) -> tuple[np.ndarray, np.ndarray]:
-    """Side lengths of the cells along u and along v, mm."""
-    return np.full(extent.east + extent.west, pitch), np.full(extent.north + extent.south, pitch)
+def sides(extent: Extent, pitch: float, fabric: Fabric) -> tuple[np.ndarray, np.ndarray]:
+    """Side lengths of the cells along u and along v, mm, with the fabric's strains.
+
+    Raises DrapeError where the fabric would shrink to less than half.
+    """
+    along = _strained(extent.west, extent.east, pitch, fabric.strain_warp, fabric.strain_growth_warp)
+    across = _strained(extent.south, extent.north, pitch, fabric.strain_weft, fabric.strain_growth_weft)
+    return along, across
+
+
+def _strained(before: int, after: int, pitch: float, strain: float, growth: float) -> np.ndarray:
+    """Sides of one family; their strain is that of their middle, ``growth`` per mm from the origin."""
+    away = np.abs(np.arange(-before, after) + 0.5) * pitch
+    share = 1.0 + strain + growth * away
+    if share.min(initial=1.0) < LEAST_SIDE:
+        raise DrapeError(
+            f"the strains of the fabric shrink it to {share.min():.2g} of its length {away.max():.4g} mm from the "
+            "origin; use smaller ones"
+        )
+    return pitch * share
 
 
 def grow(extent: Extent, grid: Grid, pitch: float) -> Extent:

@@ -47,9 +47,9 @@ _REASONS = {
 class Grid(NamedTuple):
     """State of the march; index [i, j] is the i-th warp and j-th weft position.
 
-    ``face`` holds the face number + 1 (0: no node). ``node`` (nu, nv, 10) holds the point in the frame of that face
+    ``face`` holds the face number + 1 (0: no node). ``node`` (nu, nv, 11) holds the point in the frame of that face
     and the unit directions of the yarns there, each (x, y): see the column numbers below; *out* is how a yarn leaves
-    the node toward +u (+v), *in* how it arrives. ``marks`` (nu, nv, 3) holds the status; the pieces that exist (bit
+    the node toward +u (+v), *in* how it arrives; and the strain of its weft piece to j + 1. ``marks`` (nu, nv, 3) holds the status; the pieces that exist (bit
     1: warp to i + 1, bit 2: weft to j + 1); and a bit per sense of march in which the node's cell was attempted.
     ``sides_u`` (nu - 1,) and ``sides_v`` (nv - 1,) are the lengths of the cell sides, mm. ``bucket`` and
     ``following`` are the spatial hash in which the net looks for itself (links are (i << 32 | j) + 1); ``box``
@@ -67,10 +67,10 @@ class Grid(NamedTuple):
     box: np.ndarray
 
 
-POINT, WARP_OUT, WARP_IN, WEFT_OUT, WEFT_IN = 0, 2, 4, 6, 8  # columns of Grid.node
+POINT, WARP_OUT, WARP_IN, WEFT_OUT, WEFT_IN, STRAIN = 0, 2, 4, 6, 8, 10  # columns of Grid.node
 STATUS, PIECES, TRIED = 0, 1, 2  # columns of Grid.marks
 
-BYTES_PER_NODE = 4 + 10 * 8 + 3 + 8 + 10 + 24 + 16  # grid, hash chain and buckets, points, shears
+BYTES_PER_NODE = 4 + 11 * 8 + 3 + 8 + 10 + 24 + 16  # grid, hash chain and buckets, points, shears
 
 
 def empty_grid(sides_u: np.ndarray, sides_v: np.ndarray, one_sheet: int) -> Grid:
@@ -79,7 +79,7 @@ def empty_grid(sides_u: np.ndarray, sides_v: np.ndarray, one_sheet: int) -> Grid
     buckets = 1 << max(8, int(np.ceil(np.log2(shape[0] * shape[1]))) - 2)
     return Grid(
         face=np.zeros(shape, np.int32),
-        node=np.zeros((*shape, 10)),
+        node=np.zeros((*shape, 11)),
         marks=np.zeros((*shape, 3), np.uint8),
         sides_u=np.ascontiguousarray(sides_u, dtype=float),
         sides_v=np.ascontiguousarray(sides_v, dtype=float),

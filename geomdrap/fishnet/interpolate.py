@@ -2,31 +2,76 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
     from geomdrap.fishnet.net import Net
 
+ROUNDING = 1e-9  # cells: a place this close to the side of a cell lies on it
+
+
+class _Places(NamedTuple):
+    """Cells (k,) i, j in which places lie, shares (k,) s, t of them passed, and which (n,) have a valid cell."""
+
+    i: np.ndarray
+    j: np.ndarray
+    s: np.ndarray
+    t: np.ndarray
+    ok: np.ndarray
+
+    def mean(self, nodes: np.ndarray) -> np.ndarray:
+        """Bilinear means (k, ...) of values at the nodes (nu, nv, ...)."""
+        i, j = self.i, self.j
+        s, t = (share.reshape(-1, *[1] * (nodes.ndim - 2)) for share in (self.s, self.t))
+        return np.asarray(
+            (1 - s) * (1 - t) * nodes[i, j]
+            + s * (1 - t) * nodes[i + 1, j]
+            + (1 - s) * t * nodes[i, j + 1]
+            + s * t * nodes[i + 1, j + 1]
+        )
+
 
 def at_fabric_coordinates(net: Net, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Points (n, 3) on the surface and shear (n,) at fabric coordinates (n,), NaN outside the valid cells."""
+    places = _places(net, u, v)
+    points = np.full((len(places.ok), 3), np.nan)
+    shear = np.full(len(places.ok), np.nan)
+    if places.ok.any():
+        shear[places.ok] = places.mean(net.shear)
+        points[places.ok] = net.surface.nearest(places.mean(net.points)).point
+    return points, shear
+
+
+def directions_at(net: Net, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Unit directions of warp and weft (n, 3) at fabric coordinates (n,), NaN outside the valid cells."""
+    places = _places(net, u, v)
+    both = np.full((2, len(places.ok), 3), np.nan)
+    if places.ok.any():
+        for family in range(2):
+            mean = places.mean(net.yarns[family].astype(float))
+            both[family, places.ok] = mean / np.linalg.norm(mean, axis=1, keepdims=True)
+    return both[0], both[1]
+
+
+def _places(net: Net, u: np.ndarray, v: np.ndarray) -> _Places:
+    """The valid cell of each place; on a side or a node between cells any of them will do."""
     i, s, in_u = _cell_of(net.u, np.asarray(u, dtype=float))
     j, t, in_v = _cell_of(net.v, np.asarray(v, dtype=float))
-    points = np.full((len(i), 3), np.nan)
-    shear = np.full(len(i), np.nan)
     if min(net.cell_valid.shape) == 0:
-        return points, shear
-    ok = in_u & in_v & net.cell_valid[i, j]
-    i, j, s, t = i[ok], j[ok], s[ok], t[ok]
-    weights = ((1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t)
-    corners = ((i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1))
-    shear[ok] = sum(w * net.shear[c] for w, c in zip(weights, corners, strict=True))
-    flat = sum(w[:, None] * net.points[c] for w, c in zip(weights, corners, strict=True))
-    if len(i):
-        points[ok] = net.surface.nearest(flat).point
-    return points, shear
+        none = np.zeros(0, int)
+        return _Places(none, none, s[:0], t[:0], np.zeros(len(i), bool))
+    within = in_u & in_v
+    ok = within & net.cell_valid[i, j]
+    for di, dj in ((1, 0), (0, 1), (1, 1)):
+        k, m = i - di, j - dj
+        on_side = ((s <= ROUNDING) | (di == 0)) & ((t <= ROUNDING) | (dj == 0)) & (k >= 0) & (m >= 0)
+        move = within & ~ok & on_side & net.cell_valid[np.maximum(k, 0), np.maximum(m, 0)]
+        i, j = np.where(move, k, i), np.where(move, m, j)
+        s, t = np.where(move & (di == 1), 1.0, s), np.where(move & (dj == 1), 1.0, t)
+        ok = ok | move
+    return _Places(i[ok], j[ok], s[ok], t[ok], ok)
 
 
 def _cell_of(grid: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -35,5 +80,8 @@ def _cell_of(grid: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, n
     n = np.clip(np.searchsorted(grid, x, side="right") - 1, 0, last)
     width = grid[n + 1] - grid[n] if len(grid) > 1 else np.ones(len(x))
     share = (x - grid[n]) / width
-    within = (share >= -1e-9) & (share <= 1.0 + 1e-9) & np.isfinite(x)
+    # a place a rounding error before a node counts as on it
+    over = (share >= 1.0 - ROUNDING) & (n < last)
+    n, share = np.where(over, n + 1, n), np.where(over, 0.0, share)
+    within = (share >= -ROUNDING) & (share <= 1.0 + ROUNDING) & np.isfinite(x)
     return n, np.clip(share, 0.0, 1.0), within

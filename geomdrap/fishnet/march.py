@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from geomdrap.fishnet.cell import CLOSED, FOLDED, OFF_PART, close_cell
@@ -62,10 +64,14 @@ def lay_yarn(
 
 
 @kernel
-def lay_generators(mesh: Mesh, grid: Grid, i0: int, j0: int, starts: np.ndarray, places: np.ndarray) -> None:
+def lay_generators(
+    mesh: Mesh, grid: Grid, i0: int, j0: int, starts: np.ndarray, places: np.ndarray, curvature: np.ndarray
+) -> None:
     """Lay the four half-axes, a node of each in turn so that on a closed part none runs all the way round.
 
-    ``starts`` (4,) are the faces and ``places`` (4, 4) points and directions with which +u, +v, -u, -v leave.
+    ``starts`` (4,) are the faces and ``places`` (4, 4) points and directions with which +u, +v, -u, -v leave;
+    ``curvature`` (2,) 1/mm is how warp and weft generator bend to the left: a turn at each node by the side, by half
+    of it at the seed.
     """
     steps = ((1, 0), (0, 1), (-1, 0), (0, -1))
     going = np.ones(4, np.bool_)
@@ -76,14 +82,31 @@ def lay_generators(mesh: Mesh, grid: Grid, i0: int, j0: int, starts: np.ndarray,
             if not going[a] or not inside(grid, i + di, j + dj):
                 going[a] = False
                 continue
+            turn = (1.0 if a < 2 else -1.0) * curvature[a % 2] * side_between(grid, i, j, di, dj)
             if n == 0:
                 x, y, dx, dy = places[a]
                 keep = departure(grid, i, j, di, dj)
+                if turn != 0.0:
+                    dx, dy = turned(dx, dy, 0.5 * turn)
+                    keep = turned(keep[0], keep[1], 0.5 * turn)
                 going[a] = lay_yarn(mesh, grid, i, j, di, dj, starts[a], x, y, dx, dy)
                 if going[a]:  # the seed keeps the right angle: on a vertex its half-axes lie in other frames
                     depart_as(grid, i, j, di, dj, keep[0], keep[1])
             else:
+                if turn != 0.0:  # bend what arrives, carry on straight, and put it back
+                    before = departure(grid, i, j, -di, -dj)
+                    bent = turned(before[0], before[1], turn)
+                    depart_as(grid, i, j, -di, -dj, bent[0], bent[1])
                 going[a] = carry_on(mesh, grid, i, j, di, dj)
+                if turn != 0.0:
+                    depart_as(grid, i, j, -di, -dj, before[0], before[1])
+
+
+@inlined
+def turned(dx: float, dy: float, angle_rad: float) -> tuple[float, float]:
+    """A direction turned counter-clockwise."""
+    c, s = math.cos(angle_rad), math.sin(angle_rad)
+    return c * dx - s * dy, s * dx + c * dy
 
 
 @kernel

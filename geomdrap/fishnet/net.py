@@ -10,6 +10,7 @@ import numpy as np
 from geomdrap.fishnet.fabric import Fabric
 
 if TYPE_CHECKING:
+    from geomdrap.fishnet.effect import Effect
     from geomdrap.surface import Surface
 
 
@@ -30,7 +31,9 @@ class Net:
     (2, nu, nv, 3) are the unit directions of warp and weft at them. ``cell_shear`` (nu - 1, nv - 1) and ``shear``
     (nu, nv) are signed, in degrees, NaN where there is no cell or no node (see ``shears``). ``origin`` (3,) mm,
     ``warp0``, ``weft0``, ``normal0`` (3,) unit vectors there; ``angle`` degrees; ``pitch`` mm; ``reach`` half
-    lengths of the blank, mm. ``notes`` say what was chosen, ``warnings`` what the user should look at.
+    lengths of the blank, mm. ``sides`` are the lengths of the warp pieces (nu - 1, nv) and weft pieces (nu, nv - 1)
+    as they lie, mm; None where all have the length that they have in the flat fabric. ``effects`` are those that
+    acted, in their order. ``notes`` say what was chosen, ``warnings`` what the user should look at.
     """
 
     surface: Surface
@@ -54,6 +57,8 @@ class Net:
     yarns: np.ndarray
     cell_shear: np.ndarray
     shear: np.ndarray
+    sides: tuple[np.ndarray, np.ndarray] | None = field(default=None)
+    effects: tuple[Effect, ...] = field(default=())
     notes: tuple[str, ...] = field(default=())
     warnings: tuple[str, ...] = field(default=())
 
@@ -61,6 +66,13 @@ class Net:
     def status(self) -> np.ndarray:
         """Why each node is present or absent (nu, nv), values of ``Status``."""
         return self.status_around[1:-1, 1:-1]
+
+    @property
+    def is_geodesic(self) -> bool:
+        """Whether its generators are geodesics at right angles and its shear is what the part's curvature gives."""
+        from geomdrap.fishnet.effect import Effect
+
+        return self.fabric.is_geodesic and all(type(e).on_net is Effect.on_net for e in self.effects)
 
     def interpolate(self, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Points (n, 3) mm on the surface and shear (n,) degrees at fabric coordinates u, v (n,) mm.
@@ -70,3 +82,12 @@ class Net:
         from geomdrap.fishnet.interpolate import at_fabric_coordinates
 
         return at_fabric_coordinates(self, np.atleast_1d(u), np.atleast_1d(v))
+
+    def directions(self, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Unit directions of warp and weft (n, 3) in space at fabric coordinates u, v (n,) mm.
+
+        Toward +u and +v, bilinear in the cell; NaN outside the valid cells.
+        """
+        from geomdrap.fishnet.interpolate import directions_at
+
+        return directions_at(self, np.atleast_1d(u), np.atleast_1d(v))

@@ -10,6 +10,7 @@ from geomdrap.fishnet.grid import (
     PIECES,
     POINT,
     STATUS,
+    STRAIN,
     WARP_IN,
     WARP_OUT,
     WEFT_IN,
@@ -168,7 +169,8 @@ def side_between(grid: Grid, i: int, j: int, di: int, dj: int) -> float:
     """Length of the piece from (i, j) to (i + di, j + dj), mm."""
     if dj == 0:
         return grid.sides_u[i if di > 0 else i - 1]
-    return grid.sides_v[j if dj > 0 else j - 1]
+    low = j if dj > 0 else j - 1
+    return grid.sides_v[low] * (1.0 + grid.node[i, low, STRAIN])
 
 
 @kernel

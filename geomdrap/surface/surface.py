@@ -218,6 +218,11 @@ class Surface:
         mesh = replace(self._mesh, vertex_of_input=np.arange(len(self.points)))
         return Surface._of(mesh, self.source, self.notes, self.findings)
 
+    def moved(self, points: Floats) -> Surface:
+        """The same triangles with their vertices at other points (n, 3) mm; findings are those of this surface."""
+        mesh = replace(self._mesh, points=np.array(points, dtype=np.float64, order="C"))
+        return Surface._of(mesh, self.source, self.notes, self.findings)
+
     def flipped(self) -> Surface:
         """The same part with all normals turned."""
         return Surface._of(turn_over(self._mesh), self.source, self.notes, self.findings)

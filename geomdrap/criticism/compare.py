@@ -1,0 +1,171 @@
+"""``compare``: where a drape differs from what was measured."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.criticism.compare_places import places_of
+from geomdrap.criticism.compare_residuals import in_yarns, turns
+from geomdrap.criticism.comparison import Comparison
+from geomdrap.errors import MeasurementError
+from geomdrap.fishnet import drape
+from geomdrap.fishnet.pitch import choose_pitch
+from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
+from geomdrap.measurement.match import Matched, match
+from geomdrap.measurement.noise import Noise, noise_of, repeats_of
+from geomdrap.measurement.outliers import Outlier, find_outliers
+from geomdrap.measurement.plausible import check_labels, require_on_part
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from geomdrap.fishnet import Effect, Net
+    from geomdrap.fishnet.seed import Origin
+    from geomdrap.measurement.measurement import Measurement
+    from geomdrap.surface import Surface
+
+
+def compare(
+    surface: Surface,
+    measurement: Measurement,
+    *,
+    origin: Origin,
+    angle: float,
+    pitch: float | None = None,
+    sigma_xyz: float | None = None,
+    sigma_shear: float | None = None,
+    effects: Sequence[Effect] = (),
+    reference: Sequence[float] | None = None,
+    project: bool = False,
+) -> Comparison:
+    """Drape a part and compare the net with measured points.
+
+    ``origin``, ``angle``, ``effects``, ``reference`` and ``project`` as for `drape`; ``pitch`` mm is chosen from the
+    part, and so that drawn marks lie on nodes, where it is None. ``sigma_xyz`` (mm, per coordinate) and
+    ``sigma_shear`` (degrees) are the noise of the measurement where it has no columns for it; where they are None
+    too the noise comes from replicates, or from the differences of neighbours.
+    Raises MeasurementError where the table cannot belong to the part, SurfaceError and DrapeError as `drape` does.
+    """
+    warnings = require_on_part(surface, measurement)
+    pitch, notes = suited_pitch(surface, measurement, pitch)
+    net = drape(surface, origin, angle, pitch, effects=effects, reference=reference, project=project)
+    result = compare_net(net, measurement, sigma_xyz=sigma_xyz, sigma_shear=sigma_shear)
+    return with_messages(result, notes, warnings)
+
+
+def suited_pitch(
+    surface: Surface, measurement: Measurement, pitch: float | None = None
+) -> tuple[float, tuple[str, ...]]:
+    """The pitch for a comparison, mm, and the sentence on it: as asked, or from part and marks."""
+    if pitch is not None:
+        return pitch, ()
+    wanted, _ = choose_pitch(surface)
+    steps = [s for s in (mark_spacing(measurement.u), mark_spacing(measurement.v)) if s is not None]
+    pitch = pitch_for_marks(min(steps) if steps else None, wanted)
+    source = "the part and the marks" if steps else "the part"
+    return pitch, (f"pitch {pitch:g} mm chosen from {source} (set another with --pitch)",)
+
+
+def compare_net(
+    net: Net, measurement: Measurement, *, sigma_xyz: float | None = None, sigma_shear: float | None = None
+) -> Comparison:
+    """Compare a net, from whatever model, with measured points; see `compare`."""
+    matched = match(net, measurement)
+    _require_matches(measurement, matched)
+    away = measurement.points - matched.point
+    if not measurement.labelled:
+        away = np.einsum("ij,ij->i", away, matched.normal)[:, None] * matched.normal
+    shear = None if measurement.shear is None else measurement.shear - matched.shear
+    warp, weft = (
+        None if measured is None else turns(predicted, measured, matched.normal)
+        for predicted, measured in ((matched.warp, measurement.warp), (matched.weft, measurement.weft))
+    )
+    noises, said = _noises(measurement, matched, away, shear, (warp, weft), sigma_xyz, sigma_shear)
+    outliers = find_outliers(net, measurement, matched, noises[0].sigma, noises[1].sigma)
+    return Comparison(
+        net=net,
+        measurement=measurement,
+        matched=matched,
+        vector=away,
+        parts=in_yarns(away, matched),
+        shear=shear,
+        warp_turn=warp,
+        weft_turn=weft,
+        noise_xyz=noises[0],
+        noise_shear=noises[1],
+        noise_turn=noises[2],
+        outliers=outliers,
+        trusted=_trusted(matched, outliers),
+        places=places_of(net, matched),
+        notes=(*net.notes, *measurement.notes),
+        warnings=(*net.warnings, *measurement.warnings, *said, *check_labels(net, measurement), *_words(outliers)),
+    )
+
+
+def with_messages(result: Comparison, notes: Sequence[str], warnings: Sequence[str]) -> Comparison:
+    """The same comparison with more notes and warnings, ahead of its own."""
+    from dataclasses import replace
+
+    return replace(result, notes=(*notes, *result.notes), warnings=(*warnings, *result.warnings))
+
+
+def _require_matches(measurement: Measurement, matched: Matched) -> None:
+    """Raise MeasurementError where no row has a prediction."""
+    if matched.used.any():
+        return
+    reasons = sorted(set(matched.reason), key=matched.reason.count)
+    raise MeasurementError(
+        f"{measurement.source}: none of its {len(measurement)} points has a prediction ({reasons[-1]}): check "
+        "origin, angle, labels and frame of the measurement"
+    )
+
+
+def _noises(
+    measurement: Measurement,
+    matched: Matched,
+    away: np.ndarray,
+    shear: np.ndarray | None,
+    turned: tuple[np.ndarray | None, np.ndarray | None],
+    sigma_xyz: float | None,
+    sigma_shear: float | None,
+) -> tuple[tuple[Noise, Noise, Noise], tuple[str, ...]]:
+    """Noise of coordinates, shear and directions, and warnings about them."""
+    group = repeats_of(measurement)
+    places = np.column_stack([matched.u, matched.v])
+    residual = away if measurement.labelled else np.einsum("ij,ij->i", away, matched.normal)[:, None]
+    xyz, said = noise_of("sigma_xyz", measurement.sigma_xyz, sigma_xyz, measurement.points, group, residual, places)
+    of_shear = Noise(None, None)
+    more: tuple[str, ...] = ()
+    if measurement.shear is not None and shear is not None:
+        values = measurement.shear[:, None]
+        of_shear, more = noise_of(
+            "sigma_shear", measurement.sigma_shear, sigma_shear, values, group, shear[:, None], places
+        )
+    known = [turn[:, None] for turn in turned if turn is not None]
+    of_turn = Noise(None, None)
+    if known:
+        turn = np.hstack(known)
+        of_turn, _ = noise_of("the directions", None, None, turn, group, turn, places)
+    return (xyz, of_shear, of_turn), (*said, *more)
+
+
+def _trusted(matched: Matched, outliers: tuple[Outlier, ...]) -> np.ndarray:
+    trusted = matched.used.copy()
+    trusted[[outlier.row for outlier in outliers]] = False
+    return trusted
+
+
+def _words(outliers: tuple[Outlier, ...]) -> tuple[str, ...]:
+    """Sentences on the outliers: how many, and which labels seem wrong."""
+    out = []
+    if outliers:
+        lines = ", ".join(str(line) for line in sorted({outlier.line for outlier in outliers})[:8])
+        more = ", …" if len({outlier.line for outlier in outliers}) > 8 else ""
+        out.append(f"{len(outliers)} values stand out from their neighbours (lines {lines}{more}) and are set apart")
+    for outlier in [outlier for outlier in outliers if outlier.shift is not None][:8]:
+        a, b = outlier.shift or (0, 0)
+        where = f"{a:+d} along u and {b:+d} along v"
+        out.append(f"line {outlier.line}: the label seems to be off; the mark fits {where} (in marks)")
+    return tuple(out)

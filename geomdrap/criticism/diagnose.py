@@ -1,0 +1,215 @@
+"""``diagnose``: which physical effect the model lacks.
+
+Placement first; every effect tried on top of it, fitted together with it; the likeliest kept if it passes every test
+(see ``evidence``); then again on top of that, as long as something is left that needs a cause.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
+from geomdrap.criticism.evidence import rivals
+from geomdrap.criticism.experiment import Experiment, Layup
+from geomdrap.criticism.leftover import Leftover, leftover
+from geomdrap.criticism.likelihood import Residuals, Scatter
+from geomdrap.criticism.model import Fitted, fit_placement, refit, unfitted
+from geomdrap.criticism.prepare import prepare
+from geomdrap.criticism.search import Round, judge_of, try_effects
+from geomdrap.criticism.table import tried_of, values_of
+from geomdrap.criticism.words import hints_for
+from geomdrap.effects import available
+from geomdrap.measurement.match import match
+from geomdrap.measurement.outliers import find_outliers
+
+if TYPE_CHECKING:
+    from geomdrap.fishnet.seed import Origin
+    from geomdrap.measurement import Measurement
+    from geomdrap.measurement.outliers import Outlier
+    from geomdrap.surface import Surface
+
+Progress = Callable[[float, str], None]
+
+MOST_EFFECTS = 3
+SHIFTED = 0.5  # mm: a seed that lies further off than this is named
+TURNED = 0.4  # degrees: likewise
+CERTAIN = 3.0  # standard deviations of the placement
+WORTH = 0.03  # of the first misfit: what a further effect must explain
+
+
+def diagnose(
+    surface: Surface,
+    measurement: Measurement,
+    *,
+    origin: Origin = "centroid",
+    angle: float = 0.0,
+    pitch: float | None = None,
+    sigma_xyz: float | None = None,
+    sigma_shear: float | None = None,
+    reference: tuple[float, float, float] | None = None,
+    project: bool = False,
+    effects: Sequence[str] | None = None,
+    progress: Progress = lambda share, text: None,
+) -> Diagnosis:
+    """Say which effect the geometric model lacks, by a measurement of the real ply.
+
+    ``origin``, ``angle`` (degrees), ``reference``, ``project`` and ``pitch`` (mm) as in ``drape``: what the person
+    who laid the ply believes. ``sigma_xyz`` mm and ``sigma_shear`` degrees: noise of single readings where the table has none of its
+    own. ``effects``: names to try, all of the library if None. ``progress`` is told the share done and the step.
+    Raises MeasurementError where the measurement does not go with the part.
+    """
+    progress(0.0, "matching")
+    layup = Layup(origin, angle, reference, pitch, project)
+    experiment, notes = prepare(surface, measurement, layup, sigma_xyz, sigma_shear)
+    names = [name for name in (available() if effects is None else effects) if name != "placement"]
+    rounds = search(experiment, names, progress)
+    return conclude(experiment, rounds, notes)
+
+
+def search(experiment: Experiment, names: Sequence[str], progress: Progress) -> list[Round]:
+    """Rounds of the search: the first on the plain net, each further one on the model found before it."""
+    whiten = white(experiment)
+    base = fit_placement(experiment, whiten)
+    rounds: list[Round] = []
+    while True:
+        left = [name for name in names if name not in base.model.effects]
+        told = _teller(progress, len(rounds), len(left))
+        rounds.append(try_effects(experiment, base, whiten, left, told))
+        best = chosen(rounds)
+        if best is None or len(rounds) == MOST_EFFECTS:
+            return rounds
+        base, scatter = rounds[-1].trial(best)
+        if not left_over(experiment, base, scatter).structured:
+            return rounds
+
+
+def white(experiment: Experiment) -> Callable[[np.ndarray], np.ndarray]:
+    """Division by the noise."""
+    return lambda a: a / (experiment.noise if a.ndim == 1 else experiment.noise[:, None])
+
+
+def _teller(progress: Progress, passed: int, count: int) -> Callable[[str], None]:
+    told = iter(range(count))
+    return lambda name: progress((passed + next(told) / count) / (passed + 1.0), f"trying {name}")
+
+
+def chosen(rounds: Sequence[Round]) -> str | None:
+    """The effect that the last round adds, None for none: a further one must explain enough of the first misfit."""
+    found = rivals(rounds[-1].evidence)
+    if not found:
+        return None
+    if len(rounds) > 1:
+        first = rounds[0].base.fit.chi2 - len(rounds[0].rows)
+        before = rounds[-1].base
+        after = rounds[-1].trial(found[0])[0]
+        if before.fit.chi2 - after.fit.chi2 < WORTH * first:
+            return None
+    return found[0]
+
+
+def left_over(experiment: Experiment, model: Fitted, scatter: Scatter) -> Leftover:
+    """What a model leaves."""
+    rows = np.isfinite(model.fit.residual)
+    judge = judge_of(experiment, rows)
+    return leftover(experiment, rows, judge, Residuals(model.fit.residual[rows], model.fit.slopes[rows]), scatter)
+
+
+def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, ...]) -> Diagnosis:
+    """The verdict on a finished search."""
+    added = [chosen(rounds[: k + 1]) for k in range(len(rounds))]
+    names = [name for name in added if name is not None]
+    model, scatter = rounds[0].base, rounds[0].scatter[0]
+    if names:
+        model, scatter = rounds[len(names) - 1].trial(names[-1])
+    # the final model, under the scatter that it leaves
+    rows = np.isfinite(model.fit.residual)
+    if scatter.size > 0.0 and rows.all():
+        model = refit(experiment, judge_of(experiment, rows).whiten(scatter), model)
+    left = left_over(experiment, model, scatter)
+    alike = rivals(rounds[len(names) - 1].evidence) if names else ()
+    verdict, candidates = _verdict(experiment, model, scatter, names, alike, left)
+    steps = _steps(experiment, rounds, names)
+    return Diagnosis(
+        verdict=verdict,
+        candidates=candidates,
+        confidence=_confidence(verdict, rounds, names, left),
+        experiment=experiment,
+        steps=steps,
+        noise_floor=_floor(experiment, scatter),
+        placement=values_of(experiment, model, scatter, "placement"),
+        tried=tried_of(experiment, rounds, names, model, scatter),
+        effects=tuple(model.model.built(model.values)),
+        scatter=scatter,
+        leftover=left,
+        outliers=_outliers(experiment, model),
+        hints=hints_for(experiment, rounds, verdict, candidates, model, left),
+        notes=notes,
+    )
+
+
+def _outliers(experiment: Experiment, model: Fitted) -> tuple[Outlier, ...]:
+    """Points that stand out from the final model; what stood out of a worse one may be no slip of the instrument."""
+    net = experiment.draped(model.model.built(model.values), experiment.pitches[1])
+    found = match(net, experiment.measurement)
+    return find_outliers(net, experiment.measurement, found, *experiment.noise_by_kind())
+
+
+def _verdict(
+    experiment: Experiment,
+    model: Fitted,
+    scatter: Scatter,
+    names: Sequence[str],
+    alike: Sequence[str],
+    left: Leftover,
+) -> tuple[str, tuple[str, ...]]:
+    """Verdict and candidates."""
+    if names and len(alike) > 1:
+        return AMBIGUOUS, (*names[:-1], *alike)
+    if left.structured:
+        return UNKNOWN, tuple(names)
+    if names:
+        return "+".join(names), tuple(names)
+    if _misplaced(experiment, model, scatter):
+        return PLACEMENT, ()
+    return NONE, ()
+
+
+def _misplaced(experiment: Experiment, model: Fitted, scatter: Scatter) -> bool:
+    """Whether the ply certainly lies elsewhere than meant, by more than a good lay-up does."""
+    limits = {"du": SHIFTED, "dv": SHIFTED, "dangle": TURNED}
+    return any(
+        abs(v.value) > max(limits[v.name], CERTAIN * v.sigma)
+        for v in values_of(experiment, model, scatter, "placement")
+    )
+
+
+def _steps(experiment: Experiment, rounds: Sequence[Round], names: Sequence[str]) -> tuple[Step, ...]:
+    from geomdrap.criticism.table import errors_of
+
+    plain = unfitted(experiment)
+    models = [plain, rounds[0].base, *(rounds[k].trial(name)[0] for k, name in enumerate(names))]
+    added = [None, "placement", *names]
+    return tuple(Step(name, *errors_of(experiment, model)) for name, model in zip(added, models, strict=True))
+
+
+def _floor(experiment: Experiment, scatter: Scatter) -> float:
+    """Error over the noise of a model that is right: the noise, and the scatter that no model foretells."""
+    if scatter.size == 0.0:
+        return 1.0
+    judge = judge_of(experiment, np.ones(len(experiment.noise), bool))
+    return judge.floor(scatter)
+
+
+def _confidence(verdict: str, rounds: Sequence[Round], names: Sequence[str], left: Leftover) -> float:
+    """Weight of the answer among all that were tried, 0 to 1 (G. Schwarz's criterion, 1978)."""
+    if verdict == UNKNOWN:
+        return 1.0 - min(left.p_value, 1.0)
+    last = rounds[max(len(names) - 1, 0)]
+    price = float(np.log(last.rows.sum()))
+    scores = {e.name: e.gain - e.unknowns * price for e in last.evidence}
+    own = scores.pop(names[-1]) if names else 0.0
+    rest = [*scores.values(), 0.0] if names else list(scores.values())
+    return float(1.0 / (1.0 + sum(np.exp(min(0.5 * (s - own), 50.0)) for s in rest)))

@@ -1,0 +1,79 @@
+"""What speaks for an effect, and when that is enough.
+
+An effect is found where it passes all of these: it is likelier than chance, corrected for the number that was tried
+(S. Holm, 1979); it foretells held-out blocks better; it explains a good share of the misfit; its size is possible and
+its interval leaves out nothing. One test alone finds effects in noise.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+FAMILY = 0.02  # chance of finding anything where there is nothing
+FORETELLS = 0.99  # of the held-out error without the effect
+LEAST_SHARE = 0.15  # of the misfit above the noise: a smaller one is listed, not named
+RIVAL = 6.0  # of 2 log-likelihood: effects this close to the best cannot be told from it
+RIVAL_SHARE = 0.01  # of what the best explains: nor those that explain all but this much of it
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What speaks for one effect.
+
+    ``gain``: twice the log of how much likelier the measurement is with it; ``unknowns`` that it adds; ``p_value``
+    of such a gain by chance, alone and (``p_family``) among all that were tried; ``share`` of the misfit above the
+    noise that it explains; ``cv_ratio`` of held-out errors with and without it; ``in_range``: no parameter at a bound
+    where physics ends, and not all of them as good as nothing.
+    """
+
+    name: str
+    gain: float
+    unknowns: int
+    p_value: float
+    p_family: float
+    share: float
+    cv_ratio: float
+    in_range: bool
+
+    @property
+    def found(self) -> bool:
+        """Whether it passes every test."""
+        return (
+            self.p_family < FAMILY
+            and self.gain > 2.0 + self.unknowns * math.log(10.0)
+            and self.share >= LEAST_SHARE
+            and self.cv_ratio < FORETELLS
+            and self.in_range
+        )
+
+
+def chance(gain: float, unknowns: int) -> float:
+    """Probability of a gain as large by chance (S. S. Wilks, 1938)."""
+    from scipy.stats import chi2
+
+    return float(chi2.sf(max(gain, 0.0), unknowns))
+
+
+def among_all(p_values: Sequence[float]) -> np.ndarray:
+    """Probabilities (k,) corrected for the number of tests after Holm."""
+    p = np.asarray(p_values, dtype=float)
+    order = np.argsort(p)
+    factors = len(p) - np.arange(len(p))
+    corrected = np.minimum(np.maximum.accumulate(p[order] * factors), 1.0)
+    out = np.empty(len(p))
+    out[order] = corrected
+    return out
+
+
+def rivals(evidence: Sequence[Evidence]) -> tuple[str, ...]:
+    """The best effect found, and those that cannot be told from it, the best first; empty if none was found."""
+    found = sorted((e for e in evidence if e.found), key=lambda e: e.unknowns * 2.0 - e.gain)
+    if not found:
+        return ()
+    best = found[0]
+    margin = max(RIVAL, RIVAL_SHARE * best.gain)
+    return tuple(e.name for e in found if best.gain - 2.0 * best.unknowns - (e.gain - 2.0 * e.unknowns) < margin)

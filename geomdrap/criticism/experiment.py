@@ -1,0 +1,134 @@
+"""A measurement and the model of it: what was measured as one vector, and the model's prediction of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.fishnet import Effect, Fabric, Net, drape
+
+if TYPE_CHECKING:
+    from geomdrap.fishnet.seed import Origin
+    from geomdrap.measurement import Measurement
+    from geomdrap.surface import Surface
+
+CHANNELS = ("along", "across", "normal", "shear", "warp", "weft")
+FINE, COARSE = 7000, 1500  # nodes of the net, for what costs milliseconds and for what costs seconds
+
+
+@dataclass(frozen=True)
+class Layup:
+    """How the ply is believed to lie: seed, heading (degrees), reference direction, and the pitch (mm) of the model.
+
+    ``project`` allows a seed further from the part than a pitch.
+    """
+
+    origin: Origin
+    angle: float
+    reference: tuple[float, float, float] | None = None
+    pitch: float | None = None
+    project: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Experiment:
+    """Measured values, in one order for all models.
+
+    ``at`` (n, 2) mm fabric coordinates of the points; ``channels`` (c,) names of ``CHANNELS``; ``mask`` (n, c) which
+    were measured; ``noise`` (m,) their standard deviations, mm or degrees; ``measured`` (m,); vectors hold the true
+    entries of ``mask``, channel by channel. ``frames`` (n, 3, 3): along the warp, across it, and the normal.
+    """
+
+    surface: Surface
+    measurement: Measurement
+    layup: Layup
+    at: np.ndarray
+    frames: np.ndarray
+    channels: tuple[str, ...]
+    mask: np.ndarray
+    noise: np.ndarray
+    measured: np.ndarray
+    pitches: tuple[float, float]
+
+    def predict(self, effects: Sequence[Effect] = ()) -> np.ndarray:
+        """The model's values (m,), NaN where it has none."""
+        others = [e for e in effects if not relaxes(e)]
+        if len(others) == len(effects):
+            return self._flat(self.draped(effects, self.pitches[0]))
+        # A relaxed net is costly: on a coarse net, with what the coarseness changes in the same net unrelaxed
+        fine = self._flat(self.draped(others, self.pitches[0]))
+        coarse = self._flat(self.draped(others, self.pitches[1]))
+        relaxed = self._flat(self.draped(effects, self.pitches[1]))
+        return relaxed + (fine - coarse)
+
+    def draped(self, effects: Sequence[Effect] = (), pitch: float | None = None) -> Net:
+        """The model's net with effects, at the model's own pitch (mm) unless another is given."""
+        lay = self.layup
+        pitch = pitch or self.pitches[0]
+        return drape(
+            self.surface, lay.origin, lay.angle, pitch, effects=effects, reference=lay.reference, project=lay.project
+        )
+
+    def _flat(self, net: Net) -> np.ndarray:
+        return flatten(predicted(net, self.measurement, self.frames, self.channels), self.mask)
+
+    def without(self, rows: np.ndarray) -> Experiment:
+        """The same experiment without those points (n,) bool."""
+        keep = self.mask & ~rows[:, None]
+        kept = keep.T[self.mask.T]
+        return replace(self, mask=keep, noise=self.noise[kept], measured=self.measured[kept])
+
+    def noise_by_kind(self) -> tuple[np.ndarray | None, np.ndarray | None]:
+        """Typical noise of positions (mm) and of shear (degrees), for every point (n,); None where not measured."""
+        channel = np.array(self.channels)[self.channel_of()]
+        typical = [self.noise[channel == name] for name in ("normal", "shear")]
+        n = len(self.measurement)
+        return tuple(np.full(n, np.median(t)) if len(t) else None for t in typical)  # type: ignore[return-value]
+
+    def channel_of(self) -> np.ndarray:
+        """Number of the channel of each value (m,)."""
+        return np.repeat(np.arange(len(self.channels)), self.mask.sum(axis=0))
+
+    def point_of(self) -> np.ndarray:
+        """Number of the point of each value (m,)."""
+        return np.nonzero(self.mask.T)[1]
+
+
+def relaxes(effect: Effect) -> bool:
+    """Whether an effect makes the net one of least energy, which takes a hundred times as long."""
+    return effect.on_fabric(Fabric()).relaxes
+
+
+def flatten(table: np.ndarray, mask: np.ndarray) -> np.ndarray:
+    """The true entries (m,) of a table (n, c), channel by channel."""
+    return table.T[mask.T]
+
+
+def predicted(net: Net, measurement: Measurement, frames: np.ndarray, channels: tuple[str, ...]) -> np.ndarray:
+    """The model's table (n, c): positions in mm along the frames, shear in degrees, turns of the yarns in degrees.
+
+    Directions have no zero of their own: their value is the turn from what was measured to the model.
+    """
+    from geomdrap.measurement.match import match
+
+    found = match(net, measurement)
+    out = np.full((len(measurement), len(channels)), np.nan)
+    for c, name in enumerate(channels):
+        if name in ("along", "across", "normal"):
+            out[:, c] = np.einsum("nk,nk->n", found.point, frames[:, CHANNELS.index(name)])
+        elif name == "shear":
+            out[:, c] = found.shear
+        elif (measured := getattr(measurement, name)) is not None:
+            out[:, c] = turn(measured, getattr(found, name), frames[:, 2])
+    return out
+
+
+def turn(first: np.ndarray, second: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Angle (n,) in degrees from first to second direction (n, 3), counter-clockwise about the normal, mod 180°."""
+    sine = np.einsum("nk,nk->n", np.cross(first, second), normal)
+    cosine = np.einsum("nk,nk->n", first, second)
+    angle = np.degrees(np.arctan2(sine, cosine))
+    return (angle + 90.0) % 180.0 - 90.0

@@ -1,0 +1,133 @@
+"""Fitting a model's parameters to measured values: Gauss-Newton with few predictions.
+
+A prediction is a drape, tens of milliseconds, or a relaxed net, a second; the algebra is nothing. So the slopes are
+taken once, by differences, and from then on corrected from each step's own result (C. G. Broyden, 1965).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+Predict = Callable[[np.ndarray], np.ndarray]
+
+STEPS = 12  # most accepted or refused steps
+SMALL = 0.02  # of chi-square: a step that gains less ends the fit
+LEAST_STEP = 1e-3  # of a parameter's own step, in every parameter: less ends the fit, too
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A fitted model: ``values`` (p,), ``residual`` (m,) measured less predicted, ``slopes`` (m, p), ``chi2``.
+
+    ``chi2`` is over the noise that the fit was given; ``residual`` is NaN where the model could not predict.
+    """
+
+    values: np.ndarray
+    residual: np.ndarray
+    slopes: np.ndarray
+    chi2: float
+
+
+def fit(
+    predict: Predict,
+    measured: np.ndarray,
+    whiten: Callable[[np.ndarray], np.ndarray],
+    start: np.ndarray,
+    steps: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    slopes: np.ndarray | None = None,
+) -> Fit:
+    """Parameters (p,) between ``low`` and ``high`` with the least squares of ``whiten(measured - predict(p))``.
+
+    ``predict`` gives (m,) values, NaN where it has none; those count as if they had kept their last residual.
+    ``steps`` (p,) are the differences with which slopes are taken, where ``slopes`` (m, p) are not given.
+    """
+    values = np.clip(np.asarray(start, dtype=float), low, high)
+    residual = measured - predict(values)
+    lost = np.isnan(residual)
+    filled = np.where(lost, 0.0, residual)
+    jacobian = (
+        take_slopes(predict, values, measured - residual, steps, low, high) if slopes is None else slopes.copy()
+    )
+    chi2 = _square(whiten(filled))
+    damping = 0.0
+    fresh = slopes is None
+    for _ in range(STEPS):
+        step = _step(whiten(jacobian), whiten(filled), damping, values, low, high)
+        if (np.abs(step) <= LEAST_STEP * steps).all():
+            break
+        there = predict(values + step)
+        new = measured - there
+        new = np.where(np.isnan(new), filled, new)
+        new_chi2 = _square(whiten(new))
+        # Broyden's correction: what the step really changed, less what the slopes foretold
+        scaled = step / steps
+        jacobian = jacobian + np.outer((filled - new - jacobian @ step) / (scaled @ scaled), scaled / steps)
+        gain = chi2 - new_chi2
+        if gain > 0.0:
+            values, filled, chi2, damping = values + step, new, new_chi2, 0.0
+            lost = np.isnan(there)
+            fresh = False
+            if gain < SMALL:
+                break
+        elif not fresh:  # the slopes are worn: take them anew, once for each place
+            jacobian = take_slopes(predict, values, measured - filled, steps, low, high)
+            fresh = True
+        else:
+            damping = max(4.0 * damping, 0.3)
+            if damping > 100.0:
+                break
+    return Fit(values, np.where(lost, np.nan, filled), jacobian, chi2)
+
+
+def take_slopes(
+    predict: Predict,
+    at: np.ndarray,
+    there: np.ndarray,
+    steps: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    only: np.ndarray | None = None,
+) -> np.ndarray:
+    """Slopes (m, p) by differences away from the nearer bound; 0 where one side cannot be predicted.
+
+    ``only`` (k,) are the parameters whose slopes are taken; the others stay 0.
+    """
+    out = np.zeros((len(there), len(at)))
+    for k in range(len(at)) if only is None else only:
+        step = np.zeros(len(at))
+        step[k] = steps[k] if at[k] + steps[k] <= high[k] else -steps[k]
+        out[:, k] = np.nan_to_num((predict(at + step) - there) / step[k])
+    return out
+
+
+def _square(vector: np.ndarray) -> float:
+    return float(vector @ vector)
+
+
+def _step(
+    slopes: np.ndarray, residual: np.ndarray, damping: float, values: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> np.ndarray:
+    """Damped least-squares step; parameters that would leave their bounds go to them and the rest is solved again."""
+    p = len(values)
+    step = np.zeros(p)
+    free = np.ones(p, bool)
+    for _ in range(p):
+        left = residual - slopes[:, ~free] @ step[~free]
+        a = slopes[:, free]
+        scale = np.sqrt((a * a).sum(axis=0)) + 1e-300
+        stacked = np.vstack([a / scale, np.sqrt(damping) * np.eye(a.shape[1])])
+        step[free] = np.linalg.lstsq(stacked, np.append(left, np.zeros(a.shape[1])), rcond=1e-9)[0] / scale
+        wanted = values + step
+        outside = free & ((wanted < low) | (wanted > high))
+        if not outside.any():
+            break
+        step[outside] = np.clip(wanted[outside], low[outside], high[outside]) - values[outside]
+        free &= ~outside
+        if not free.any():
+            break
+    return step

@@ -1,0 +1,151 @@
+"""From a measured table to an experiment: pitch of the model, frames, noise, outliers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.criticism.experiment import CHANNELS, COARSE, FINE, Experiment, Layup, flatten, predicted
+from geomdrap.errors import MeasurementError
+from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
+from geomdrap.measurement.match import Matched, match
+from geomdrap.measurement.noise import noise_of, repeats_of
+from geomdrap.measurement.outliers import find_outliers
+from geomdrap.measurement.plausible import check_labels, require_on_part
+
+if TYPE_CHECKING:
+    from geomdrap.measurement import Measurement
+    from geomdrap.surface import Surface
+
+MOST_POINTS = 400  # with a dense covariance; more points are thinned out evenly
+POSITION = ("along", "across", "normal")
+NOT_POSITION = {"shear": "shear", "warp": "direction", "weft": "direction"}
+
+
+def prepare(
+    surface: Surface,
+    measurement: Measurement,
+    layup: Layup,
+    sigma_xyz: float | None = None,
+    sigma_shear: float | None = None,
+) -> tuple[Experiment, tuple[str, ...]]:
+    """The experiment, without the points that stand out from their neighbours, and notes on what was chosen.
+
+    ``sigma_xyz`` mm and ``sigma_shear`` degrees apply where the table has no noise of its own; with neither, noise is
+    read from how neighbouring residuals differ. Raises MeasurementError where nothing can be compared.
+    """
+    require_on_part(surface, measurement)
+    notes: list[str] = []
+    measurement = thinned(measurement, notes)
+    lay = replace(layup, pitch=None)
+    pitches = _pitches(surface, measurement, layup)
+    empty = np.zeros(0)
+    bare = Experiment(
+        surface,
+        measurement,
+        lay,
+        np.zeros((0, 2)),
+        np.zeros((0, 3, 3)),
+        (),
+        np.zeros((0, 0), bool),
+        empty,
+        empty,
+        pitches,
+    )
+    net = bare.draped()
+    found = match(net, measurement)
+    if not found.used.any():
+        raise MeasurementError(
+            f"{measurement.source}: the model predicts none of the {len(measurement)} points "
+            f"({found.reason[0]}); check the origin, the heading and the units of the table"
+        )
+    notes += check_labels(net, measurement)
+    at = np.column_stack([found.u, found.v])
+    frames = np.stack([found.warp, np.cross(found.normal, found.warp), found.normal], axis=1)
+    channels, values = measured_table(measurement, found, frames)
+    table = predicted(net, measurement, frames, channels)
+    mask = np.isfinite(values) & np.isfinite(table) & np.isfinite(at).all(axis=1)[:, None]
+    sigma, more = _noise(measurement, channels, values, values - table, at, sigma_xyz, sigma_shear)
+    for outlier in find_outliers(net, measurement, found, *_by_kind(channels, sigma)):
+        kind = [name in POSITION for name in channels]
+        mask[outlier.row] &= ~np.array(kind) if outlier.kind == "position" else np.array(kind)
+    if not mask.any():
+        raise MeasurementError(f"{measurement.source}: every point stands out from its neighbours; check the table")
+    experiment = Experiment(
+        surface, measurement, lay, at, frames, channels, mask, flatten(sigma, mask), flatten(values, mask), pitches
+    )
+    return experiment, (*notes, *more)
+
+
+def thinned(measurement: Measurement, notes: list[str]) -> Measurement:
+    """At most ``MOST_POINTS`` points, the same whatever the order of the rows."""
+    n = len(measurement)
+    if n <= MOST_POINTS:
+        return measurement
+    notes.append(f"{MOST_POINTS} of {n} points were used, drawn evenly from all")
+    order = np.lexsort(np.round(measurement.points, 6).T)
+    return measurement.take(np.sort(order[np.random.default_rng(0).permutation(n)[:MOST_POINTS]]))
+
+
+def _pitches(surface: Surface, measurement: Measurement, layup: Layup) -> tuple[float, float]:
+    """Pitches of the fine and of the coarse net: by the numbers of nodes, dividing the spacing of the marks."""
+    spacing = mark_spacing(measurement.u)
+    fine = layup.pitch or pitch_for_marks(spacing, float(np.sqrt(surface.area / FINE)))
+    coarse = max(pitch_for_marks(spacing, float(np.sqrt(surface.area / COARSE))), fine)
+    return fine, coarse
+
+
+def measured_table(
+    measurement: Measurement, found: Matched, frames: np.ndarray
+) -> tuple[tuple[str, ...], np.ndarray]:
+    """Channels (c,) and measured values (n, c), NaN where there is none."""
+    table: dict[str, np.ndarray] = {}
+    for name in POSITION if measurement.labelled else ("normal",):
+        table[name] = np.einsum("nk,nk->n", measurement.points, frames[:, CHANNELS.index(name)])
+    if measurement.shear is not None:
+        table["shear"] = measurement.shear
+    for name in ("warp", "weft"):
+        direction = getattr(measurement, name)
+        if direction is not None:
+            table[name] = np.where(np.isfinite(direction).all(axis=1), 0.0, np.nan)
+    return tuple(table), np.column_stack(list(table.values()))
+
+
+def _noise(
+    measurement: Measurement,
+    channels: tuple[str, ...],
+    values: np.ndarray,
+    residual: np.ndarray,
+    at: np.ndarray,
+    sigma_xyz: float | None,
+    sigma_shear: float | None,
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Noise (n, c) of every value, and warnings. Raises MeasurementError where there is no way to know it."""
+    sigma = np.full(values.shape, np.nan)
+    repeats = repeats_of(measurement)
+    warnings: tuple[str, ...] = ()
+    for kind, column, given in (
+        ("position", measurement.sigma_xyz, sigma_xyz),
+        ("shear", measurement.sigma_shear, sigma_shear),
+        ("direction", measurement.sigma_shear, sigma_shear),
+    ):
+        own = [c for c, name in enumerate(channels) if NOT_POSITION.get(name, "position") == kind]
+        if not own:
+            continue
+        noise, more = noise_of(kind, column, given, values[:, own], repeats, residual[:, own], at)
+        if noise.sigma is None:
+            raise MeasurementError(
+                f"{measurement.source}: there are too few points to read the noise of the {kind} from them; give it "
+                f"({'--sigma-xyz' if kind == 'position' else '--sigma-shear'})"
+            )
+        sigma[:, own] = noise.sigma[:, None]
+        warnings += more
+    return sigma, warnings
+
+
+def _by_kind(channels: tuple[str, ...], sigma: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """Noise (n,) of positions and of shear, None where there are none."""
+    position = sigma[:, channels.index("normal")] if "normal" in channels else None
+    return position, sigma[:, channels.index("shear")] if "shear" in channels else None

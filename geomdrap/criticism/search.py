@@ -1,0 +1,132 @@
+"""The search for missing effects: each tried on top of a base model, and what speaks for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from geomdrap.criticism.evidence import Evidence, among_all, chance
+from geomdrap.criticism.experiment import Experiment
+from geomdrap.criticism.holdout import blocks_of, held_out_error
+from geomdrap.criticism.likelihood import Judge, Residuals, Scatter
+from geomdrap.criticism.model import Fitted, Whiten, add_effect
+
+CLIMB = 3  # models for which the likeliest scatter is searched: the base and the best two
+
+
+@dataclass(frozen=True, eq=False)
+class Round:
+    """One round of the search: a base model, every effect tried on top of it, and the evidence.
+
+    ``rows`` (m,) bool are the values that all models predict; ``judge`` knows their noise. ``scatter`` holds the
+    likeliest lay-up scatter of the base and of every trial, ``cv_base`` the base's held-out error.
+    """
+
+    base: Fitted
+    trials: tuple[Fitted, ...]
+    evidence: tuple[Evidence, ...]
+    scatter: tuple[Scatter, ...]
+    rows: np.ndarray
+    judge: Judge
+    cv_base: float
+
+    def trial(self, effect: str) -> tuple[Fitted, Scatter]:
+        """The trial of an effect and its scatter."""
+        k = [t.model.effects[-1] for t in self.trials].index(effect)
+        return self.trials[k], self.scatter[k + 1]
+
+
+def try_effects(
+    experiment: Experiment, base: Fitted, whiten: Whiten, names: Sequence[str], done: Callable[[str], None]
+) -> Round:
+    """Fit every effect on top of the base, and weigh what speaks for it. ``done`` is told each name."""
+    trials = []
+    for name in names:
+        done(name)
+        trials.append(add_effect(experiment, whiten, base, name))
+    models = [base, *trials]
+    rows = np.all([np.isfinite(m.fit.residual) for m in models if _predicts(m)], axis=0)
+    judge = judge_of(experiment, rows)
+    linear = [Residuals(np.nan_to_num(m.fit.residual[rows]), m.fit.slopes[rows]) for m in models]
+    white = np.array([float(((r.residual / judge.noise) ** 2).sum()) for r in linear])
+    order = [0, *(1 + np.argsort(white[1:], kind="stable"))][:CLIMB]
+    scatter, likelihood = judge.best_scatter(linear, order)
+    block = blocks_of(experiment.at)[experiment.point_of()[rows]]
+    errors = [held_out_error(r.residual, r.slopes, judge.noise, block) for r in linear]
+    # shares and held-out errors are of the misfit above noise and the scatter that the best model leaves
+    best = scatter[int(likelihood.argmax())]
+    squares = [judge.square(best, r) for r in linear]
+    floor = float(rows.sum())
+    evidence = _weigh(models, likelihood, squares, errors, floor)
+    return Round(base, tuple(trials), evidence, tuple(scatter), rows, judge, errors[0])
+
+
+def _predicts(model: Fitted) -> bool:
+    """Whether a model has predictions for most values; one that has not cannot be compared."""
+    return bool(np.isfinite(model.fit.residual).mean() > 0.7)
+
+
+def judge_of(experiment: Experiment, rows: np.ndarray) -> Judge:
+    """A judge of those values (m,) bool of an experiment."""
+    mask = np.zeros_like(experiment.mask)
+    mask.T[experiment.mask.T] = rows
+    return Judge(experiment.at, experiment.channels, mask, experiment.noise[rows], unit_of(experiment))
+
+
+def unit_of(experiment: Experiment) -> float:
+    """A length, mm, in which scatter is counted: the noise of positions, or what their turns mean over 20 mm."""
+    positions = [c for c, name in enumerate(experiment.channels) if name in ("along", "across", "normal")]
+    own = np.isin(experiment.channel_of(), positions)
+    if "along" in experiment.channels and own.any():
+        return float(np.median(experiment.noise[own]))
+    return float(np.radians(np.median(experiment.noise[~own])) * 20.0) if (~own).any() else 0.1
+
+
+def _weigh(
+    models: Sequence[Fitted], likelihood: np.ndarray, squares: Sequence[float], errors: Sequence[float], floor: float
+) -> tuple[Evidence, ...]:
+    """Evidence for every model after the first, which is the base."""
+    base = models[0]
+    gains = [2.0 * float(value - likelihood[0]) for value in likelihood[1:]]
+    unknowns = [len(m.values) - len(base.values) + _shapes(m) for m in models[1:]]
+    p_values = [chance(g, k) for g, k in zip(gains, unknowns, strict=True)]
+    family = among_all(p_values)
+    misfit = squares[0] - floor
+    clear = misfit > 3.0 * np.sqrt(2.0 * floor)  # else there is nothing to explain
+    out = []
+    for k, model in enumerate(models[1:]):
+        usable = _predicts(model)
+        out.append(
+            Evidence(
+                name=model.model.effects[-1],
+                gain=gains[k] if usable else 0.0,
+                unknowns=unknowns[k],
+                p_value=p_values[k] if usable else 1.0,
+                p_family=float(family[k]) if usable else 1.0,
+                share=min((squares[0] - squares[k + 1]) / misfit, 1.0) if usable and clear else 0.0,
+                cv_ratio=errors[k + 1] / errors[0] if usable else 1.0,
+                in_range=usable and _in_range(model),
+            )
+        )
+    return tuple(out)
+
+
+def _shapes(model: Fitted) -> int:
+    """Unknowns more than parameters: a value that is searched over a range is worth about two."""
+    own = model.parameters_of(model.model.effects[-1])
+    return sum(1 for p, _ in own if p.neutral in (p.low, p.high))
+
+
+def _in_range(model: Fitted) -> bool:
+    """Whether the last effect acts, and no value lies at a bound that is not its neutral one."""
+    own = model.parameters_of(model.model.effects[-1])
+    values = [(p, float(model.values[k])) for p, k in own]
+    at_bound = [v in (p.low, p.high) and v != p.neutral and not _natural(p, v) for p, v in values]
+    return not any(at_bound) and any(v != p.neutral for p, v in values)
+
+
+def _natural(parameter: object, value: float) -> bool:
+    """Whether a bound is a value that can be, such as a share of 1 or an onset of 0."""
+    return value in (0.0, 1.0)

@@ -1,0 +1,102 @@
+"""A diagnosis in sentences, for people: the verdict, what speaks for it, and what these data cannot show."""
+
+from __future__ import annotations
+
+from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Tried, Value
+
+
+def verdict_sentence(d: Diagnosis) -> str:
+    """The answer, in one or two sentences."""
+    if d.verdict == NONE:
+        scatter = (
+            f"; lay-up scatter of {d.scatter.size:.2g} mm over {d.scatter.length:.0f} mm accounts for the rest"
+            if d.scatter.size > 0.0
+            else ""
+        )
+        return f"Nothing is missing: the model agrees with the measurement down to its noise{scatter}."
+    if d.verdict == PLACEMENT:
+        return f"The model is right, but the ply was laid elsewhere: {_list(d.placement)}."
+    if d.verdict == AMBIGUOUS:
+        return f"These effects explain the measurement equally well: {_and(d.candidates)}."
+    if d.verdict == UNKNOWN:
+        found = (
+            f" {_and(d.candidates)} explain{'s' if len(d.candidates) == 1 else ''} part of it."
+            if d.candidates
+            else ""
+        )
+        return f"Something is missing that no effect of the library explains.{found}"
+    chosen = [t for t in d.tried if t.selected]
+    values = "; ".join(f"{t.name} ({_list(t.values)})" for t in chosen)
+    return f"The model lacks {values}."
+
+
+def error_sentence(d: Diagnosis) -> str:
+    """How the error falls."""
+    first, last = d.steps[0], d.steps[-1]
+    return (
+        f"Error over the noise: {first.error:.2f} as meant, {d.steps[1].error:.2f} with the placement fitted"
+        + (f", {last.error:.2f} with all effects" if len(d.steps) > 2 else "")
+        + f" (held out {last.cv_error:.2f}); a perfect model would have {d.noise_floor:.2f}."
+    )
+
+
+def rival_sentence(d: Diagnosis) -> str | None:
+    """What the next best effect would have explained."""
+    if d.verdict in (NONE, PLACEMENT, UNKNOWN):
+        return None
+    others = [t for t in d.tried if not t.selected and t.name not in d.candidates]
+    if not others:
+        return None
+    best = max(others, key=lambda t: t.evidence.share)
+    if best.evidence.share < 0.01:
+        return "No other effect explains more than 1 % of the misfit."
+    return f"The next best, {best.name}, explains {100 * best.evidence.share:.0f} % of the misfit above the noise."
+
+
+def unseen_sentences(d: Diagnosis) -> list[str]:
+    """Effects that were not found, with the smallest size that would have been, and those that cannot be seen."""
+    seen, blind = [], []
+    for t in d.tried:
+        if t.selected or t.name in d.candidates:
+            continue
+        sizes = [f"{name} {amount:.2g}{_unit(unit)}" for name, amount, unit in t.visible if amount is not None]
+        if sizes:
+            seen.append(f"{t.name} above {', '.join(sizes)}")
+        else:
+            blind.append(t.name)
+    out = []
+    if seen:
+        out.append("Would have been seen: " + "; ".join(seen) + ".")
+    if blind:
+        out.append("Cannot be seen in these data: " + ", ".join(blind) + ".")
+    return out
+
+
+def table_rows(d: Diagnosis) -> list[tuple[str, ...]]:
+    """Header and a row per effect: name, values, share of the misfit, held-out error, chance, looks like."""
+    rows = [("effect", "fitted", "explains", "held out", "by chance", "looks like")]
+    return rows + [_row(t) for t in d.tried]
+
+
+def _row(t: Tried) -> tuple[str, ...]:
+    return (
+        ("* " if t.selected else "  ") + t.name,
+        _list(t.values),
+        f"{100 * max(t.evidence.share, 0.0):.0f} %",
+        f"{t.cv_error:.2f}",
+        f"{t.evidence.p_family:.1g}",
+        ", ".join(t.confounded_with) or "-",
+    )
+
+
+def _list(values: tuple[Value, ...]) -> str:
+    # no-break spaces: a value stays on one line with its interval
+    return ", ".join(f"{v.name}\u00a0{v.value:.3g}\u00a0±\u00a0{1.96 * v.sigma:.1g}{_unit(v.unit)}" for v in values)
+
+
+def _unit(unit: str) -> str:
+    return f"\u00a0{unit}" if unit else ""
+
+
+def _and(names: tuple[str, ...]) -> str:
+    return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else "".join(names)

@@ -1,0 +1,104 @@
+"""The numbers of a diagnosis: errors of models, values with intervals, and a row for every effect tried."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from geomdrap.criticism.diagnosis import Tried, Value
+from geomdrap.criticism.evidence import FAMILY, Evidence
+from geomdrap.criticism.experiment import Experiment
+from geomdrap.criticism.holdout import blocks_of, held_out_error
+from geomdrap.criticism.likelihood import Scatter
+from geomdrap.criticism.model import Fitted
+from geomdrap.criticism.search import Round, judge_of
+from geomdrap.criticism.signature import ALIKE, beside_base, least_visible, look_alike
+
+POSITION = ("along", "across", "normal")
+
+
+def errors_of(experiment: Experiment, model: Fitted) -> tuple[float, float, float | None, float | None]:
+    """Error and held-out error over the noise, rms of the positions (mm, as vectors) and of the shear (degrees)."""
+    rows = np.isfinite(model.fit.residual)
+    residual, noise = model.fit.residual[rows], experiment.noise[rows]
+    block = blocks_of(experiment.at)[experiment.point_of()[rows]]
+    error = float(np.sqrt(np.mean((residual / noise) ** 2)))
+    held_out = held_out_error(residual, model.fit.slopes[rows], noise, block)
+    channel = np.array(experiment.channels)[experiment.channel_of()[rows]]
+    place = np.isin(channel, POSITION)
+    count = len(np.unique(channel[place]))
+    rms_position = float(np.sqrt(count * np.mean(residual[place] ** 2))) if place.any() else None
+    shear = channel == "shear"
+    return error, held_out, rms_position, float(np.sqrt(np.mean(residual[shear] ** 2))) if shear.any() else None
+
+
+def covariance_of(experiment: Experiment, model: Fitted, scatter: Scatter) -> np.ndarray:
+    """Covariance (p, p) of a model's values under noise and scatter."""
+    rows = np.isfinite(model.fit.residual)
+    slopes = judge_of(experiment, rows).whiten(scatter)(model.fit.slopes[rows])
+    size = np.linalg.norm(slopes, axis=0) + 1e-300
+    scaled = slopes / size
+    return np.asarray(np.linalg.pinv(scaled.T @ scaled, rcond=1e-12) / np.outer(size, size))
+
+
+def values_of(experiment: Experiment, model: Fitted, scatter: Scatter, effect: str) -> tuple[Value, ...]:
+    """Fitted parameters of an effect with their standard deviations."""
+    sigma = np.sqrt(np.diag(covariance_of(experiment, model, scatter)))
+    return tuple(
+        Value(p.name, float(model.values[k]), float(sigma[k]), p.unit) for p, k in model.parameters_of(effect)
+    )
+
+
+def tried_of(
+    experiment: Experiment, rounds: Sequence[Round], names: Sequence[str], final: Fitted, scatter: Scatter
+) -> tuple[Tried, ...]:
+    """Every effect, the likeliest first; those of the final model with their final values."""
+    last = rounds[-1] if len(rounds) > len(names) else rounds[len(names) - 1]
+    rows = []
+    for k, name in enumerate(names):
+        rows.append(_row(experiment, rounds[k], name, final, scatter, scatter, True))
+    others = [t.model.effects[-1] for t in last.trials if t.model.effects[-1] not in names]
+    others.sort(key=lambda name: -_evidence(last, name).gain)
+    rows += [_row(experiment, last, name, *last.trial(name), scatter, False) for name in others]
+    return tuple(rows)
+
+
+def _evidence(of: Round, name: str) -> Evidence:
+    return next(e for e in of.evidence if e.name == name)
+
+
+def _row(
+    experiment: Experiment, of: Round, name: str, model: Fitted, scatter: Scatter, final: Scatter, selected: bool
+) -> Tried:
+    values = values_of(experiment, model, scatter, name)
+    _, held_out, rms_position, rms_shear = errors_of(experiment, model)
+    return Tried(
+        name=name,
+        values=values,
+        evidence=_evidence(of, name),
+        rms_position=rms_position,
+        rms_shear=rms_shear,
+        cv_error=held_out,
+        confounded_with=_confounded(of, name, final),
+        visible=_visible(of, name, final),
+        selected=selected,
+    )
+
+
+def _confounded(of: Round, name: str, scatter: Scatter) -> tuple[str, ...]:
+    names = [t.model.effects[-1] for t in of.trials]
+    signatures = [beside_base(of.judge, scatter, of.rows, of.base, t) for t in of.trials]
+    alike = look_alike(signatures)[names.index(name)]
+    return tuple(n for n, cosine in zip(names, alike, strict=True) if n != name and cosine > ALIKE)
+
+
+def _visible(of: Round, name: str, scatter: Scatter) -> tuple[tuple[str, float | None, str], ...]:
+    trial = of.trial(name)[0]
+    signature = beside_base(of.judge, scatter, of.rows, of.base, trial)
+    sizes = least_visible(signature, len(of.trials), FAMILY)
+    out: list[tuple[str, float | None, str]] = []
+    for (p, _), size in zip(trial.parameters_of(name), sizes, strict=True):
+        room = max(p.high - p.neutral, p.neutral - p.low)
+        out.append((p.name, float(size) if size < room else None, p.unit))
+    return tuple(out)

@@ -1,0 +1,93 @@
+"""A diagnosis in words: what to look at, what to do, what to measure next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.criticism.diagnosis import AMBIGUOUS, UNKNOWN
+from geomdrap.criticism.experiment import Experiment
+from geomdrap.criticism.leftover import Leftover
+from geomdrap.criticism.model import Fitted
+
+if TYPE_CHECKING:
+    from geomdrap.criticism.search import Round
+
+SEEN = {
+    "along": "along the warp",
+    "across": "across the warp",
+    "normal": "off the tool",
+    "shear": "in the shear",
+    "warp": "in the warp's direction",
+    "weft": "in the weft's direction",
+}
+
+
+def hints_for(
+    experiment: Experiment,
+    rounds: Sequence[Round],
+    verdict: str,
+    candidates: Sequence[str],
+    model: Fitted,
+    left: Leftover,
+) -> tuple[str, ...]:
+    """Sentences for the user."""
+    hints = []
+    if verdict == AMBIGUOUS and len(candidates) > 1:
+        first, second = (rounds[-1 if len(candidates) == 2 else 0].trial(n)[0] for n in candidates[-2:])
+        hints.append(where_they_differ(experiment, first, second))
+    if verdict == UNKNOWN:
+        places = ", ".join(SEEN[c] for c in left.channels) or "everywhere a little"
+        hints.append(
+            f"something is left that no effect of the library explains, {left.size:.1f} times the noise, {places}"
+        )
+        hints += trends(experiment, model)
+    if experiment.measurement.shear is None:
+        hints.append("the table has no shear angles: springback and other effects on shear alone cannot be seen")
+    if not experiment.measurement.labelled:
+        hints.append(
+            "the table has no u, v: where marks moved cannot be seen, so yarn-extension and other effects that leave "
+            "the shear as it is are not visible; draw a grid on the flat fabric to see them"
+        )
+    return tuple(hints)
+
+
+def where_they_differ(experiment: Experiment, first: Fitted, second: Fitted) -> str:
+    """What to measure to tell two models apart: the place where they differ most."""
+    nets = [experiment.draped(m.model.built(m.values), experiment.pitches[1]) for m in (first, second)]
+    u = np.intersect1d(np.round(nets[0].u, 6), np.round(nets[1].u, 6))
+    v = np.intersect1d(np.round(nets[0].v, 6), np.round(nets[1].v, 6))
+    grid = [(a.ravel()) for a in np.meshgrid(u, v, indexing="ij")]
+    (p, g), (q, h) = (net.interpolate(*grid) for net in nets)
+    away = np.linalg.norm(p - q, axis=1)
+    names = " and ".join(m.model.effects[-1] for m in (first, second))
+    if not np.isfinite(away).any():
+        return f"{names} explain the measurement equally well"
+    k = int(np.nanargmax(away))
+    return (
+        f"{names} explain the measurement equally well; they differ most at u = {grid[0][k]:.0f}, v = {grid[1][k]:.0f} "
+        f"mm, by {away[k]:.2g} mm and {abs(g[k] - h[k]):.2g}° of shear: measure there"
+    )
+
+
+def trends(experiment: Experiment, model: Fitted) -> list[str]:
+    """What the leftover goes with."""
+    from geomdrap.criticism.compare import compare_net
+    from geomdrap.criticism.compare_trends import AGAINST
+
+    net = experiment.draped(model.model.built(model.values))
+    noise = experiment.noise
+    channel = np.array(experiment.channels)[experiment.channel_of()]
+    given = {
+        kind: float(np.median(noise[channel == c]))
+        for kind, c in (("xyz", "normal"), ("shear", "shear"))
+        if (channel == c).any()
+    }
+    comparison = compare_net(net, experiment.measurement, sigma_xyz=given.get("xyz"), sigma_shear=given.get("shear"))
+    return [
+        f"the {t.kind} residual {'grows' if t.rho > 0 else 'falls'} with {AGAINST[t.against]} (rank correlation {t.rho:.2f})"
+        for t in comparison.trends
+        if t.rho is not None and t.p is not None and t.p < 0.01
+    ]

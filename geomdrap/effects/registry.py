@@ -1,0 +1,112 @@
+"""The effects there are, by name: the library's own, those of installed packages, and the user's."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import import_module
+from importlib.metadata import entry_points
+
+from geomdrap.errors import EffectError
+from geomdrap.fishnet import Effect
+
+GROUP = "geomdrap.effects"  # of entry points of other packages
+
+LIBRARY = (
+    "placement",
+    "yarn-extension",
+    "tension-gradient",
+    "weave-skew",
+    "steering",
+    "slip",
+    "thickness",
+    "bridging",
+    # shear-stiffness
+    # locking
+    # shear-asymmetry
+    # crossing-slip
+    "springback",
+)
+
+_REGISTERED: dict[str, type[Effect]] = {}
+
+
+def _own(name: str) -> type[Effect]:
+    """The class of an effect of the library, in the module of the same name."""
+    module = import_module(f"geomdrap.effects.{name.replace('-', '_')}")
+    effect: type[Effect] = getattr(module, name.title().replace("-", ""))
+    return effect
+
+
+@cache
+def _installed() -> dict[str, type[Effect]]:
+    """The library's own effects and those that installed packages offer as entry points.
+
+    Raises EffectError for an entry point that is no effect with a name of its own.
+    """
+    found = {name: _own(name) for name in LIBRARY}
+    for point in entry_points(group=GROUP):
+        try:
+            effect = point.load()
+        except Exception as error:  # another package's code may raise anything
+            raise EffectError(f"effect {point.name} of {point.value} does not load ({error}); repair or remove it") from error
+        _check(effect, point.value, found)
+        found[effect.name] = effect
+    return found
+
+
+def _check(effect: object, place: str, known: dict[str, type[Effect]]) -> None:
+    """Raise EffectError for what is no effect, has no name, or has that of another."""
+    if not (isinstance(effect, type) and issubclass(effect, Effect) and effect.name):
+        raise EffectError(f"{place} is no subclass of geomdrap.Effect with a name; give it one: name = 'my-effect'")
+    if known.get(effect.name, effect) is not effect:
+        raise EffectError(f"{place}: there is an effect {effect.name} already; choose another name")
+
+
+def register(effect: type[Effect]) -> type[Effect]:
+    """Make an effect known by its name, in place of one registered before; also a decorator.
+
+    Raises EffectError where it has no name, or that of an effect of the library.
+    """
+    _check(effect, getattr(effect, "__name__", repr(effect)), _installed())
+    _REGISTERED[effect.name] = effect
+    return effect
+
+
+def available() -> dict[str, type[Effect]]:
+    """All effects by name; each says what it is and which ``parameters`` it takes (see ``Effect``)."""
+    return {**_installed(), **_REGISTERED}
+
+
+def find(name: str) -> type[Effect]:
+    """The effect of a name. Raises EffectError, with the names there are, if there is none."""
+    known = available()
+    if name not in known:
+        raise EffectError(f"there is no effect {name!r}; the effects are {', '.join(known)}")
+    return known[name]
+
+
+def make(name: str, **values: float) -> Effect:
+    """An effect by name with values of its parameters; those not given are neutral.
+
+    Raises EffectError for an unknown effect or parameter, and for values out of bounds.
+    """
+    return find(name)(**values)
+
+
+def parse(text: str) -> Effect:
+    """An effect as written on a command line, ``slip:coefficient=0.6`` or ``yarn-extension:strain_warp=0.01,...``.
+
+    Raises EffectError where it cannot be read.
+    """
+    name, _, rest = text.partition(":")
+    values: dict[str, float] = {}
+    for item in filter(None, (part.strip() for part in rest.split(","))):
+        key, equals, number = (part.strip() for part in item.partition("="))
+        try:
+            value = float(number)
+        except ValueError:
+            equals = ""
+        if not equals or key in values or "_" in number:
+            raise EffectError(f"effect {text!r}: {item!r} is not PARAMETER=NUMBER, each once, as in slip:coefficient=0.6")
+        values[key] = value
+    return make(name.strip(), **values)

@@ -1,0 +1,137 @@
+"""How large the noise of a measurement is, and from where that is known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.errors import MeasurementError
+from geomdrap.measurement.local import deviations, robust_sigma
+
+if TYPE_CHECKING:
+    from geomdrap.measurement.measurement import Measurement
+
+LEAST_REPEATS = 5
+"""Degrees of freedom of repeats from which a noise is estimated."""
+DISAGREE = 1.5
+"""Factor between the noise given and the one that repeats show from which it is worth a warning."""
+
+ROUNDING = 1e-6
+"""Of the residual: neighbour differences below this are rounding, not noise."""
+
+COLUMN, GIVEN, REPEATS = "columns of the table", "given", "replicates"
+RESIDUAL = "neighbour differences of the residual"
+
+
+@dataclass(frozen=True, eq=False)
+class Noise:
+    """Standard deviations (n,) of single values, and the source of them; None where it is not known."""
+
+    sigma: np.ndarray | None
+    source: str | None
+
+    @property
+    def typical(self) -> float | None:
+        """Root mean square of the standard deviations."""
+        return None if self.sigma is None else float(np.sqrt(np.mean(self.sigma**2)))
+
+
+def noise_of(
+    name: str,
+    column: np.ndarray | None,
+    given: float | None,
+    values: np.ndarray,
+    group: np.ndarray | None,
+    residual: np.ndarray,
+    places: np.ndarray,
+) -> tuple[Noise, tuple[str, ...]]:
+    """Noise of values (n, k), from the first of: column, given, repeats, neighbour differences; and warnings.
+
+    ``column`` (n,) may hold NaN, which the next source fills. ``group`` (n,) numbers the repeats of one mark;
+    ``residual`` (n, k) with NaN where there is no prediction, at ``places`` (n, 2). Raises MeasurementError for a
+    given noise that is not above 0.
+    """
+    if given is not None and not (np.isfinite(given) and given > 0.0):
+        raise MeasurementError(f"{name} is a standard deviation and must be above 0, not {given:g}")
+    repeats, freedom = pooled(values, group)
+    fallback, source = _fallback(given, repeats, freedom, residual, places)
+    sigma, source = _filled(column, fallback, source, len(values))
+    if sigma is None:
+        return Noise(None, None), ()
+    noise = Noise(sigma, source)
+    return noise, _disagreement(name, noise, repeats, freedom)
+
+
+def pooled(values: np.ndarray, group: np.ndarray | None) -> tuple[float, int]:
+    """Standard deviation within the groups (n,) of values (n, k), and its degrees of freedom."""
+    if group is None:
+        return float("nan"), 0
+    known = np.isfinite(values).all(axis=1)
+    values, (_, group) = values[known], np.unique(group[known], return_inverse=True)
+    count = np.bincount(group)
+    total = sum(_within(values[:, k], group, count) for k in range(values.shape[1]))
+    freedom = int(values.shape[1] * (count - 1).sum())
+    return (float(np.sqrt(total / freedom)), freedom) if freedom else (float("nan"), 0)
+
+
+def _within(values: np.ndarray, group: np.ndarray, count: np.ndarray) -> float:
+    mean = np.bincount(group, values) / count
+    return float(((values - mean[group]) ** 2).sum())
+
+
+def repeats_of(measurement: Measurement) -> np.ndarray | None:
+    """Numbers (n,) of the mark that each row repeats, None where no mark was measured twice."""
+    if measurement.u is None or measurement.v is None:
+        return None
+    labels = np.round(np.column_stack([measurement.u, measurement.v]), 6)
+    _, group = np.unique(labels, axis=0, return_inverse=True)
+    group = group.ravel()
+    return group if len(np.unique(group)) < len(group) else None
+
+
+def _fallback(
+    given: float | None, repeats: float, freedom: int, residual: np.ndarray, places: np.ndarray
+) -> tuple[float | None, str | None]:
+    if given is not None:
+        return given, GIVEN
+    if freedom >= LEAST_REPEATS:
+        return repeats, REPEATS
+    known = np.isfinite(residual).all(axis=1) & np.isfinite(places).all(axis=1)
+    if known.sum() < 8:
+        return None, None
+    off, factor = deviations(places[known], residual[known])
+    sigma = robust_sigma(off / factor[:, None])
+    size = float(np.sqrt(np.mean(residual[known] ** 2)))
+    return (sigma, RESIDUAL) if sigma > ROUNDING * size else (None, None)
+
+
+def _filled(
+    column: np.ndarray | None, fallback: float | None, source: str | None, n: int
+) -> tuple[np.ndarray | None, str | None]:
+    """The column with its open cells filled, or the fallback in all rows."""
+    if column is None or (np.isnan(column).any() and fallback is None):
+        return (None, None) if fallback is None else (np.full(n, fallback), source)
+    open_cells = np.isnan(column)
+    if open_cells.any() and fallback is not None:
+        return np.where(open_cells, fallback, column), f"{COLUMN}, else {source}"
+    return column, COLUMN
+
+
+def _disagreement(name: str, noise: Noise, repeats: float, freedom: int) -> tuple[str, ...]:
+    """A warning where repeats scatter otherwise than the noise that was given, beyond chance."""
+    from scipy.stats import chi2
+
+    said = noise.typical
+    if freedom < LEAST_REPEATS or said is None or noise.source == REPEATS:
+        return ()
+    ratio = repeats / said
+    p = 2.0 * min(chi2.sf(freedom * ratio**2, freedom), chi2.cdf(freedom * ratio**2, freedom))
+    if p > 1e-3 or 1.0 / DISAGREE < ratio < DISAGREE:
+        return ()
+    word = "more" if ratio > 1.0 else "less"
+    return (
+        f"the replicates scatter by {repeats:.3g}, {word} than the noise of {said:.3g} that is given for {name}: "
+        "check which of the two is right",
+    )

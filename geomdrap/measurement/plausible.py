@@ -1,0 +1,122 @@
+"""Mistakes of a whole table that make every number wrong: units, another frame, swapped or mirrored labels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.errors import MeasurementError
+from geomdrap.measurement.marks import mark_spacing
+
+if TYPE_CHECKING:
+    from geomdrap.fishnet import Net
+    from geomdrap.measurement.measurement import Measurement
+    from geomdrap.surface import Surface
+
+OFF = 0.1
+"""Of the part's diagonal: when half of the points lie further off than this, they are in another frame or unit."""
+FITS = 0.02
+"""Of the diagonal: half of the points this near say that a change of unit explains it."""
+SMALL = 0.06
+"""Of the part's diagonal: a measured area this small is a small area, or another unit."""
+BETTER = 0.25
+"""Other labels explain a measurement where they bring half of the points to this share of the distance."""
+
+FACTORS = {"m": 1000.0, "in": 25.4, "cm": 10.0}
+
+OTHER_LABELS = (
+    ("u and v are swapped", (0, 1, 1, 0)),
+    ("u runs the other way (mirrored)", (-1, 0, 0, 1)),
+    ("v runs the other way (mirrored)", (1, 0, 0, -1)),
+    ("u and v both run the other way (turned by 180 degrees)", (-1, 0, 0, -1)),
+    ("u and v are swapped and v runs the other way (turned by 90 degrees)", (0, 1, -1, 0)),
+    ("u and v are swapped and u runs the other way (turned by 90 degrees)", (0, -1, 1, 0)),
+    ("u and v are swapped and both run the other way", (0, -1, -1, 0)),
+)
+"""What else the labels may be: words, and the matrix that turns the labels read into the right ones."""
+
+
+def require_on_part(surface: Surface, measurement: Measurement) -> tuple[str, ...]:
+    """Warnings about the unit of the measurement. Raises MeasurementError for points nowhere near the part."""
+    points, size = measurement.points, surface.diagonal
+    distance = float(np.median(surface.nearest(points).distance))
+    extent = float(np.linalg.norm(np.ptp(points, axis=0)))
+    unit = _other_unit(surface, points) if distance > OFF * size or extent < SMALL * size else None
+    if unit is not None:
+        hint = (
+            f"{measurement.source}: the points span {extent:.4g} mm and the part {size:.4g} mm; in {unit} they would "
+            f"lie on the part: use --unit-measured {unit}"
+        )
+        if distance > OFF * size or _labels_agree(measurement, FACTORS[unit]):
+            raise MeasurementError(hint)
+        return (hint + " if so",)
+    if distance > OFF * size:
+        raise MeasurementError(
+            f"{measurement.source}: half of the points lie {distance:.4g} mm or more off {surface.source}, which is "
+            f"{size:.4g} mm across: measure in the part's coordinates, or check --unit and --unit-measured"
+        )
+    return ()
+
+
+def _other_unit(surface: Surface, points: np.ndarray) -> str | None:
+    """The unit in which half of the points would lie on the part and cover some of it, None where there is none."""
+    best, name = FITS * surface.diagonal, None
+    for unit, factor in FACTORS.items():
+        extent = float(np.linalg.norm(np.ptp(points, axis=0))) * factor
+        distance = float(np.median(surface.nearest(points * factor).distance))
+        if distance < best and 0.1 * surface.diagonal < extent < 1.5 * surface.diagonal:
+            best, name = distance, unit
+    return name
+
+
+def _labels_agree(measurement: Measurement, factor: float) -> bool:
+    """Whether marks would be of a sensible distance from one another only with that factor (labels are in mm)."""
+    if measurement.u is None or measurement.v is None:
+        return False
+    labels = float(np.hypot(np.ptp(measurement.u), np.ptp(measurement.v)))
+    extent = float(np.linalg.norm(np.ptp(measurement.points, axis=0)))
+    return bool(0.5 < extent * factor / max(labels, 1e-300) < 1.5)
+
+
+def check_labels(net: Net, measurement: Measurement) -> tuple[str, ...]:
+    """A warning where other labels (swapped, mirrored, counted from another mark) fit the net far better."""
+    if measurement.u is None or measurement.v is None:
+        return ()
+    labels = np.column_stack([measurement.u, measurement.v])
+    present = _typical_distance(net, measurement.points, labels)
+    step = mark_spacing(measurement.u), mark_spacing(measurement.v)
+    best, words = BETTER * present, ""
+    for text, matrix in OTHER_LABELS:
+        distance = _typical_distance(net, measurement.points, labels @ np.reshape(matrix, (2, 2)).T)
+        if distance < best:
+            best, words = distance, text
+    for text, shift in _other_counts(step):
+        distance = _typical_distance(net, measurement.points, labels + shift)
+        if distance < best:
+            best, words = distance, text
+    if not words:
+        return ()
+    return (
+        f"{measurement.source}: it looks as if {words}: half of the points would then lie within {best:.3g} mm of "
+        f"the prediction, instead of {present:.3g} mm",
+    )
+
+
+def _other_counts(step: tuple[float | None, float | None]) -> list[tuple[str, np.ndarray]]:
+    """Shifts (2,) of all labels by one mark, with words."""
+    if step[0] is None or step[1] is None:
+        return []
+    counts = [(a, b) for a in (-1, 0, 1) for b in (-1, 0, 1) if (a, b) != (0, 0)]
+    return [
+        (f"all labels are off by a mark (by {a:+d} along u, {b:+d} along v)", np.array([-a * step[0], -b * step[1]]))
+        for a, b in counts
+    ]
+
+
+def _typical_distance(net: Net, points: np.ndarray, labels: np.ndarray) -> float:
+    """Median distance in mm of points (n, 3) from where labels (n, 2) are predicted; infinite for too few of them."""
+    predicted, _ = net.interpolate(labels[:, 0], labels[:, 1])
+    away = np.linalg.norm(points - predicted, axis=1)
+    known = np.isfinite(away)
+    return float(np.median(away[known])) if known.sum() > 0.5 * len(points) else float("inf")

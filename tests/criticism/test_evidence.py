@@ -1,0 +1,43 @@
+"""What counts as found, and what cannot be told apart."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geomdrap.criticism.evidence import Evidence, among_all, chance, rivals
+
+GOOD = Evidence("slip", 60.0, 1, 1e-14, 1e-13, 0.9, 0.5, True)
+
+
+def test_chances_are_corrected_as_holm_did():
+    np.testing.assert_allclose(among_all([0.01, 0.04, 0.03]), [0.03, 0.06, 0.06])
+    np.testing.assert_allclose(among_all([0.5, 0.9]), [1.0, 1.0])
+
+
+def test_the_chance_of_a_gain_is_that_of_normal_numbers_squared():
+    rng = np.random.default_rng(0)
+    made = (rng.normal(size=(20000, 2)) ** 2).sum(axis=1)
+    assert chance(6.0, 2) == pytest.approx((made > 6.0).mean(), abs=0.005)
+    assert chance(-1.0, 2) == 1.0
+
+
+@pytest.mark.parametrize(
+    "weaker",
+    [{"p_family": 0.03}, {"gain": 4.0}, {"share": 0.1}, {"cv_ratio": 1.0}, {"in_range": False}],
+    ids=lambda w: next(iter(w)),
+)
+def test_an_effect_is_found_only_if_it_passes_every_test(weaker):
+    assert GOOD.found
+    assert not replace(GOOD, **weaker).found
+
+
+def test_those_close_to_the_best_are_its_rivals_and_others_are_not():
+    close, far = replace(GOOD, name="close", gain=56.0), replace(GOOD, name="far", gain=40.0)
+    assert rivals([far, close, GOOD]) == ("slip", "close")
+    assert rivals([replace(GOOD, share=0.0)]) == ()
+
+
+def test_of_two_with_the_same_gain_the_one_with_fewer_unknowns_comes_first():
+    wide = replace(GOOD, name="wide", unknowns=3, gain=61.0)
+    assert rivals([wide, GOOD])[0] == "slip"

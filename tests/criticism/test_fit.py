@@ -1,0 +1,72 @@
+"""Fitting with few predictions: right answers, bounds, and places that predict nothing."""
+
+import numpy as np
+import pytest
+
+from geomdrap.criticism.fit import fit, take_slopes
+
+WIDE = (np.full(2, -100.0), np.full(2, 100.0))
+STEPS = np.full(2, 0.01)
+
+
+def same(a):
+    return a
+
+
+def curve(p):
+    t = np.linspace(0.0, 2.0, 40)
+    return p[0] * np.exp(-p[1] * t)
+
+
+def test_a_linear_model_is_solved_in_one_step_as_least_squares_solves_it():
+    rng = np.random.default_rng(0)
+    a, y = rng.normal(size=(30, 2)), rng.normal(size=30)
+    calls = []
+
+    def predict(p):
+        calls.append(p)
+        return a @ p
+
+    got = fit(predict, y, same, np.zeros(2), STEPS, *WIDE)
+    np.testing.assert_allclose(got.values, np.linalg.lstsq(a, y, rcond=None)[0], atol=1e-8)
+    assert len(calls) <= 6
+
+
+def test_a_curved_model_is_found_from_noisy_values_as_scipy_finds_it():
+    from scipy.optimize import least_squares
+
+    y = curve(np.array([3.0, 1.5])) + np.random.default_rng(1).normal(0.0, 0.02, 40)
+    exact = least_squares(lambda p: y - curve(p), [1.0, 0.5]).x
+    got = fit(curve, y, lambda a: a / 0.02, np.array([1.0, 0.5]), STEPS, *WIDE)
+    spread = np.sqrt(np.diag(np.linalg.inv(got.slopes.T @ got.slopes / 0.02**2)))
+    assert (np.abs(got.values - exact) < 0.05 * spread).all()
+    assert got.chi2 == pytest.approx((((y - curve(exact)) / 0.02) ** 2).sum(), abs=0.05)
+
+
+def test_values_stay_within_their_bounds_and_the_rest_is_the_best_there():
+    y = curve(np.array([3.0, 1.5]))
+    got = fit(curve, y, same, np.array([1.0, 0.5]), STEPS, np.zeros(2), np.array([10.0, 1.0]))
+    assert got.values[1] == 1.0
+    base = curve(np.array([1.0, 1.0]))
+    assert got.values[0] == pytest.approx(base @ y / (base @ base), rel=1e-3)
+
+
+def test_values_that_a_step_can_no_longer_predict_are_reported_and_pull_nowhere():
+    y = curve(np.array([3.0, 1.5]))
+
+    def shrinking(p):
+        out = curve(p)
+        out[:5] = np.nan if p[0] > 2.0 else out[:5]
+        return out
+
+    got = fit(shrinking, y, same, np.array([1.0, 1.5]), STEPS, *WIDE)
+    assert np.isnan(got.residual[:5]).all()
+    assert np.isfinite(got.residual[5:]).all()
+    assert got.values[0] == pytest.approx(3.0, abs=0.05)
+
+
+def test_slopes_lean_away_from_a_bound():
+    at = np.array([1.0, 1.0])
+    got = take_slopes(curve, at, curve(at), STEPS, np.zeros(2), np.array([1.0, 1.0]))
+    t = np.linspace(0.0, 2.0, 40)
+    np.testing.assert_allclose(got, np.column_stack([np.exp(-t), -t * np.exp(-t)]), atol=0.02)
