@@ -56,7 +56,7 @@ def topology(known: NDArray[np.bool_]) -> Topology:
     """Find the sides, corners and bends of the net whose nodes are ``known`` (n, n)."""
     number: Index = np.full(known.shape, -1, dtype=np.intp)
     number[known] = np.arange(np.count_nonzero(known))
-    rows, columns = np.indices(known.shape)
+    rows, columns = np.meshgrid(*(np.arange(n) for n in known.shape), indexing="ij")
     warp = np.stack([number[:-1], number[1:]], axis=-1).reshape(-1, 2)
     weft = np.stack([number[:, :-1], number[:, 1:]], axis=-1).reshape(-1, 2)
     yarns = (columns[:-1].ravel(), known.shape[1] + rows[:, :-1].ravel())
