@@ -14,6 +14,7 @@ COMMANDS = {
     "improve": "Add missing effects to a drape until it agrees with measured points.",
     "check": "Say whether a mesh is fit for draping, and what is wrong with it.",
     "diff": "Say what changed between two results (for golden files in CI).",
+    "blind": "Test the diagnosis on sets with a hidden effect.",
     "sample": "Write a sample part.",
 }
 

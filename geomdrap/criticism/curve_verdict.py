@@ -36,7 +36,10 @@ def judge_curves(curves: Mapping[str, Curve], split: float) -> CurveVerdict:
     Only single causes in their physical range can win; where the series name different ones, or deny each other,
     the verdict is ``ambiguous``. MeasurementError where a series cannot be split so.
     """
-    fits = {name: {e: fit_curve(effect, curve, split) for e, effect in EFFECTS.items()} for name, curve in curves.items()}
+    fits = {
+        series: {name: fit_curve(effect, curve, split) for name, effect in EFFECTS.items()}
+        for series, curve in curves.items()
+    }
     winners = {name: _winner(table) for name, table in fits.items()}
     apart = disagreement(list(curves.values()))
     named = set(winners.values())
