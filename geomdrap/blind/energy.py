@@ -16,7 +16,7 @@ from geomdrap.blind.terms import Array
 LOCKED, SOFT = 0.5, 0.5
 """Stiffness beyond the locking angle, energy per rad² and corner: sides give way before the shear does; and over
 how many degrees it sets in."""
-RELIEF, RELIEF_SIDES, KEPT = 1.0, 3e-3, 300.0
+RELIEF, RELIEF_SIDES, KEPT = 1.0, 0.02, 300.0
 """Slip at the crossings: energies of missing the relieved shear, of uneven sides and of a yarn's total length."""
 HELD = 1e3  # weight of what is held: the heading of the first warp side
 

@@ -20,6 +20,7 @@ RELAXING = ("dome", "saddle", "double-bump", "ridge")
 MUCH_SHEARED = ("dome", "saddle", "double-bump")
 ASYMMETRIC_RATIO = 0.003  # shear stiffness of the nets whose stiffness depends on the sign of the shear
 LOCKED_RATIO = 1e-4  # so little that shear below the locking angle is all but free
+BENT_RATIO = 0.001  # with less, yarns stay straight by shearing the whole net to a slant
 
 Draw = Callable[[np.random.Generator, float, float], tuple[dict[str, float], dict[str, Any]]]
 """(random generator, amount, 97th percentile of |γ| without the effect) -> parameters as named, recipe's fields."""
@@ -111,8 +112,8 @@ def _order(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[str,
 
 
 def _bending(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[str, float], dict[str, Any]]:
-    length = amount * rng.uniform(3.0, 7.0)
-    return {"length": length}, {"bending": length**2, "stiffness": LOCKED_RATIO}
+    length = amount * rng.uniform(2.5, 5.0)
+    return {"length": length}, {"bending": length**2, "stiffness": BENT_RATIO}
 
 
 def _heat(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[str, float], dict[str, Any]]:

@@ -115,7 +115,8 @@ def _vector(
     case: Case, recipe: Recipe, seen: Marks, size: tuple[float, float], sigmas: tuple[float, float]
 ) -> Array:
     """Positions and shear of the seen marks (4 n,) in standard deviations; NaN where there is no such mark."""
-    marks = true_marks(lay(case.tool, recipe, size[0]), recipe, None, size[1])
+    side = min(2.0 * size[0], size[1])  # coarser than the set itself: a measure of size, to a few per cent
+    marks = true_marks(lay(case.tool, recipe, side), recipe, None, size[1])
     row = {tuple(uv): n for n, uv in enumerate(np.round(marks.uv, 6))}
     at = np.array([row.get(tuple(uv), -1) for uv in np.round(seen.uv, 6)])
     values = np.column_stack([marks.points / sigmas[0], marks.shear / sigmas[1]])

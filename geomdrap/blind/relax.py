@@ -137,13 +137,13 @@ def _minimum(problem: _Problem, xy: Array) -> Array:
         step = _step(*terms, damping, problem.seed)
         trial = xy + step.reshape(-1, 2)
         after = problem.energy(trial)
+        settled = abs(energy - after) <= enough * energy and damping < DAMPED
         if after <= energy:
-            settled = energy - after <= enough * energy and damping < DAMPED
             xy, energy, damping = trial, after, max(damping / 5.0, 1e-9)
             if settled:
                 return xy
             terms = problem.linear(xy)
-        elif np.max(np.abs(step)) < SMALL_STEP * problem.side:
+        elif settled or np.max(np.abs(step)) < SMALL_STEP * problem.side:
             return xy
         else:
             damping *= 10.0
