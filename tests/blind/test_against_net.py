@@ -30,11 +30,11 @@ def plain(tmp_path, **options):
 @pytest.mark.slow
 @pytest.mark.parametrize("part", TOOLS)
 def test_without_noise_and_with_small_facets_both_codes_give_the_same_ply(tmp_path, monkeypatch, part):
-    """With the 15,000 facets of a set, the facets alone make 0.17 mm on a dome; with 120,000 it is 0.05 mm."""
-    monkeypatch.setattr("geomdrap.blind.files.FACETS", 120_000)
+    """With the 15,000 facets of a set, the facets alone make 0.17 mm on a dome; with 120,000 0.05, with 400,000 0.005."""
+    monkeypatch.setattr("geomdrap.blind.files.FACETS", 400_000)
     position, shear = misfit(plain(tmp_path, effect="none", part=part, noise=0.01))
-    assert position < 0.08
-    assert shear < 0.15
+    assert position < 0.04
+    assert shear < 0.1
 
 
 @pytest.mark.parametrize("part", TOOLS)
