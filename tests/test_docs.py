@@ -16,23 +16,37 @@ CONTEXT = click.Context(cli, info_name="geomdrap", **cli.context_settings)
 
 
 def _command(name: str) -> click.Command:
-    command = cli.get_command(CONTEXT, name)
+    first, *more = name.split()
+    command = cli.get_command(CONTEXT, first)
+    for word in more:
+        assert isinstance(command, click.Group)
+        command = command.get_command(CONTEXT, word)
     assert command is not None
     return command
+
+
+def _leaves() -> list[str]:
+    """Names of all commands, those of groups with the group's name before."""
+    groups = {name: command for name in COMMANDS if isinstance(command := _command(name), click.Group)}
+    inner = [f"{name} {sub}" for name, group in groups.items() for sub in group.commands]
+    return [name for name in COMMANDS if name not in groups] + inner
+
+
+LEAVES = _leaves()
 
 
 def _options(command: click.Command) -> list[click.Option]:
     return [parameter for parameter in command.params if isinstance(parameter, click.Option)]
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", LEAVES)
 def test_a_command_has_help_that_says_what_it_does(name: str) -> None:
     text = _command(name).help or ""
     assert len(text.splitlines()[0]) > 20
     assert text.splitlines()[0].endswith(".")
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", LEAVES)
 def test_the_help_of_a_command_has_an_example_of_it_that_parses(name: str) -> None:
     text = _command(name).get_help(click.Context(_command(name), CONTEXT, name))
     examples = re.findall(rf"^ *geomdrap {name} (.+)$", text, flags=re.MULTILINE)
@@ -41,26 +55,26 @@ def test_the_help_of_a_command_has_an_example_of_it_that_parses(name: str) -> No
         _command(name).make_context(name, example.split(), CONTEXT)  # raises UsageError if it does not parse
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", LEAVES)
 def test_every_option_has_help(name: str) -> None:
     silent = [option.opts[0] for option in _options(_command(name)) if not option.help]
     assert not silent
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", LEAVES)
 def test_every_command_prints_json(name: str) -> None:
     assert "--json" in [opt for option in _options(_command(name)) for opt in option.opts]
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", LEAVES)
 def test_help_comes_with_a_short_and_a_long_option(name: str) -> None:
     for flag in ("-h", "--help"):
         with pytest.raises(SystemExit) as end:
-            cli.main([name, flag])
+            cli.main([*name.split(), flag])
         assert end.value.code == 0
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", LEAVES)
 def test_the_readme_names_the_command_and_all_its_options(name: str) -> None:
     text = README.read_text(encoding="utf-8")
     wanted = [f"geomdrap {name}", *(max(o.opts, key=len) for o in _options(_command(name)))]

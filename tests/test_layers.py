@@ -20,6 +20,7 @@ ORDER = (
     "forming",
     "measurement",
     "criticism",
+    "blind",
     "sweep",
     "export",
     "cli",

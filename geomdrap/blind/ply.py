@@ -1,0 +1,126 @@
+"""A simulated ply: the geometric construction, relaxed where the recipe asks for it, and its shear."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from geomdrap.blind.cells import grow
+from geomdrap.blind.closing import closed
+from geomdrap.blind.lines import generators
+from geomdrap.blind.recipe import Recipe
+from geomdrap.blind.sheet import Sheet, bare, normals, parallel
+from geomdrap.blind.terms import Array
+from geomdrap.blind.tools import Tool
+from geomdrap.errors import GeomdrapError
+
+QUADRANTS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
+
+
+@dataclass(frozen=True)
+class Ply:
+    """A net of nodes on a sheet: NaN where the ply does not get."""
+
+    sheet: Sheet
+    u: Array
+    """(n,) mm, from the seed along the warp."""
+    v: Array
+    """(n,) mm, along the weft."""
+    plan: Array
+    """(n, n, 2) plan points, mm."""
+    points: Array
+    """(n, n, 3) mm."""
+
+
+def lay(tool: Tool, recipe: Recipe, side: float) -> Ply:
+    """Lay a ply with cells of ``side`` mm on ``tool``; GeomdrapError if the seed is not on it."""
+    start = np.asarray(recipe.start, dtype=float)
+    if not tool.holds(start):
+        raise GeomdrapError(f"the seed ({start[0]:g}, {start[1]:g}) is not on the blind part {tool.name}")
+    sheet = _sheet(tool, recipe)
+    m = int(np.ceil(1.6 * sum(tool.half) / side))
+    axes = _axes(sheet, recipe, side, m)
+    quads = grow(sheet, tool.holds, _in_quadrants(axes), _sides(recipe, side, m), recipe.slip)
+    plan = _unfolded(quads)
+    ply = _ply(sheet, side * np.arange(-m, m + 1.0), plan)
+    if not recipe.relaxed:
+        return ply
+    from geomdrap.blind.relax import relaxed
+
+    return _ply(sheet, ply.u, relaxed(sheet, ply.plan, recipe, side))
+
+
+def warp_direction(tangent_x: Array, normal: Array, angle: float) -> Array:
+    """The direction (3,) at ``angle`` deg counter-clockwise about ``normal`` from +x laid into the tangent plane."""
+    x = np.array([1.0, 0.0, 0.0])
+    x = x - normal * (normal @ x)
+    x /= np.linalg.norm(x)
+    turn = np.deg2rad(angle)
+    return np.cos(turn) * x + np.sin(turn) * np.cross(normal, x)
+
+
+def _ply(sheet: Sheet, u: Array, plan: Array) -> Ply:
+    points = np.full((*plan.shape[:2], 3), np.nan)
+    known = np.isfinite(plan[..., 0])
+    points[known] = sheet(plan[known])[0]
+    return Ply(sheet, u, u.copy(), plan, points)
+
+
+def _sheet(tool: Tool, recipe: Recipe) -> Sheet:
+    if recipe.ball:
+        return closed(tool, recipe.ball)
+    return parallel(tool.term, recipe.offset) if recipe.offset else bare(tool.term)
+
+
+def _axes(sheet: Sheet, recipe: Recipe, side: float, m: int) -> Array:
+    """Plan points (4, m + 1, 2) of the half-axes +warp, +weft, −warp, −weft."""
+    start = np.asarray(recipe.start, dtype=float)[None]
+    _, tangent, _ = sheet(start)
+    n = normals(sheet, start)[0]
+    warp = warp_direction(tangent[0], n, recipe.angle)
+    weft = warp_direction(tangent[0], n, recipe.angle + 90.0 + recipe.skew)
+    turns = side * np.repeat(_curvatures(recipe)[:, None], m, axis=1)
+    turns[:, 0] *= 0.5  # from the tangent at the seed to the first chord
+    at, kink = recipe.kink
+    if kink:
+        turns[0, min(int(at / side), m - 1)] += np.sin(np.deg2rad(kink))
+    sides = np.stack([_strained(recipe, axis, side, m) for axis in (0, 1, 0, 1)])
+    sides[1::2] /= np.cos(np.deg2rad(recipe.skew)) ** recipe.slip  # the shear along the weft axis is −skew
+    return generators(sheet, start[0], np.stack([warp, weft, -warp, -weft]), sides, turns)
+
+
+def _curvatures(recipe: Recipe) -> Array:
+    """Curvature to the left of each half-axis as it is walked from the seed; (4,) 1/mm."""
+    warp, weft = recipe.curvature
+    return np.array([warp, weft, -warp, -weft])
+
+
+def _strained(recipe: Recipe, axis: int, side: float, m: int) -> Array:
+    """Lengths (m,) mm of successive sides from the axis through the seed outward."""
+    middle = side * (np.arange(m) + 0.5)
+    return np.asarray(side * (1.0 + recipe.extension[axis] + recipe.gradient[axis] * middle))
+
+
+def _in_quadrants(axes: Array) -> tuple[Array, Array]:
+    """The half-axes (4, m + 1, 2) as warp and weft axes of the four quadrants."""
+    half = {(0, 1): 0, (1, 1): 1, (0, -1): 2, (1, -1): 3}
+    warp = np.stack([axes[half[0, s]] for s, _ in QUADRANTS])
+    weft = np.stack([axes[half[1, t]] for _, t in QUADRANTS])
+    return warp, weft
+
+
+def _sides(recipe: Recipe, side: float, m: int) -> tuple[Array, Array]:
+    """Warp sides (4, m, m + 1) and weft sides (4, m + 1, m), mm: the same in all quadrants."""
+    warp = np.broadcast_to(_strained(recipe, 0, side, m)[:, None], (4, m, m + 1))
+    weft = np.broadcast_to(_strained(recipe, 1, side, m)[None, :], (4, m + 1, m))
+    return warp, weft
+
+
+def _unfolded(quads: Array) -> Array:
+    """One net (2m + 1, 2m + 1, 2) out of four quadrants (4, m + 1, m + 1, 2)."""
+    m = quads.shape[1] - 1
+    plan = np.full((2 * m + 1, 2 * m + 1, 2), np.nan)
+    for (s, t), quad in zip(QUADRANTS, quads, strict=True):
+        plan[m::s, m::t] = quad
+    return plan

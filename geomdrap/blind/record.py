@@ -1,0 +1,86 @@
+"""The record of a blind set: the verdict, written before the truth is shown, then both side by side.
+
+``solved.json`` holds the seal that the verdict was given for and when; ``revealed.json`` the grade. A set that has
+been revealed takes no verdict any more.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from geomdrap.blind.judge import GOOD, grade, parameters
+from geomdrap.blind.seal import read_seal, unseal
+from geomdrap.errors import GeomdrapError
+
+SOLVED, REVEALED = "solved.json", "revealed.json"
+
+
+def refuse_if_revealed(folder: Path) -> None:
+    """Raise GeomdrapError if the truth of the set in ``folder`` has been shown, or if it is no set."""
+    read_seal(folder)
+    if (folder / REVEALED).exists():
+        raise GeomdrapError(f"the truth of {folder} has been revealed, so solving it proves nothing; make a new set")
+
+
+def write_solved(folder: Path, diagnosis: Mapping[str, Any]) -> dict[str, Any]:
+    """Write the ``diagnosis`` (schema geomdrap.diagnose/1) as the verdict on the set; gives what was written."""
+    refuse_if_revealed(folder)
+    record = {
+        "schema": "geomdrap.blind-solved/1",
+        "seal": read_seal(folder),
+        "solved_at": _now(),
+        "verdict": diagnosis["verdict"],
+        "candidates": list(diagnosis.get("candidates", ())),
+        "confidence": diagnosis.get("confidence"),
+        "diagnosis": dict(diagnosis),
+    }
+    _write(folder / SOLVED, record)
+    return record
+
+
+def reveal(folder: Path, anyway: bool = False) -> dict[str, Any]:
+    """Check the seal, show the truth and grade the verdict; written to revealed.json.
+
+    GeomdrapError if the seal is broken, if the verdict was given for another seal, or if there is none, unless
+    ``anyway``: then ``grade`` is None.
+    """
+    truth = unseal(folder)
+    solved = _read_solved(folder)
+    if solved is None and not anyway:
+        raise GeomdrapError(f"{folder} is not solved yet; run geomdrap blind solve first, or reveal it --anyway")
+    result: dict[str, Any] = {"schema": "geomdrap.blind-reveal/1", "seal": read_seal(folder), "truth": truth}
+    result.update({"revealed_at": _now(), "verdict": None, "candidates": [], "grade": None, "right": None})
+    result["parameters"] = parameters(truth, solved["diagnosis"] if solved else {})
+    if solved is not None:
+        told = grade(truth["answer"], solved["verdict"], solved["candidates"])
+        found = {key: solved[key] for key in ("verdict", "candidates", "confidence", "solved_at")}
+        result.update({**found, "grade": told, "right": told in GOOD})
+    if not (folder / REVEALED).exists():
+        _write(folder / REVEALED, result)
+    return result
+
+
+def _read_solved(folder: Path) -> dict[str, Any] | None:
+    path = folder / SOLVED
+    if not path.exists():
+        return None
+    try:
+        solved: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        seal = solved["seal"]
+    except (OSError, ValueError, KeyError, TypeError):
+        raise GeomdrapError(f"{path} cannot be read as a verdict; solve the set again") from None
+    if seal != read_seal(folder):
+        raise GeomdrapError(f"{path} was written for another seal; solve the set again")
+    return solved
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
+
+
+def _write(path: Path, record: Mapping[str, Any]) -> None:
+    path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")

@@ -1,0 +1,161 @@
+"""A measured curve of a bias-extension test, the pin-jointed theory of it, and what the theory may lack.
+
+A strip of length L and width W, cut at 45° and pulled by δ, shears in its middle as a pin-jointed net with
+cos((90° − γ)/2) = (D + δ)/(√2 D), D = L − W, as long as its yarns neither stretch nor slip
+(J. Cao et al., Composites A 39 (2008) 1037, equation of the pure-shear zone). Each effect changes that by one idea.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geomdrap.errors import MeasurementError
+
+Array = NDArray[np.float64]
+Model = Callable[[Array, Array, float], Array]
+"""(displacement (n,) mm, parameters (k,), D mm) -> shear (n,) deg."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Shear (n,) deg at displacements (n,) mm, by one method of reading; ``length`` D = L − W in mm."""
+
+    series: str
+    displacement: Array
+    shear: Array
+    length: float
+
+    def part(self, chosen: NDArray[np.bool_]) -> Curve:
+        """Give the chosen points alone."""
+        return Curve(self.series, self.displacement[chosen], self.shear[chosen], self.length)
+
+
+def read_curves(path: str | Path, length: float, width: float) -> dict[str, Curve]:
+    """Read a table ``series,displacement,shear`` (mm, deg; lines with # are notes): a curve per series.
+
+    ``length`` and ``width`` of the specimen, mm. MeasurementError names the file and what is wrong with it.
+    """
+    if not length > width > 0.0:
+        raise MeasurementError(f"a bias-extension strip is longer than wide; got {length:g} × {width:g} mm")
+    try:
+        lines = [x for x in Path(path).read_text(encoding="utf-8").splitlines() if x.strip() and x[0] != "#"]
+    except (OSError, UnicodeDecodeError):
+        raise MeasurementError(f"{path} cannot be read as a table of text; name a CSV file") from None
+    if not lines or lines[0].replace(" ", "") != "series,displacement,shear":
+        raise MeasurementError(f"{path} does not start with the header series,displacement,shear; add it")
+    rows = [_row(path, number, line) for number, line in enumerate(lines[1:], 1)]
+    if not rows:
+        raise MeasurementError(f"{path} has a header and no points; add some")
+    found: dict[str, Curve] = {}
+    for name in dict.fromkeys(row[0] for row in rows):
+        points = np.array(sorted(row[1:] for row in rows if row[0] == name))
+        found[name] = Curve(name, points[:, 0], points[:, 1], length - width)
+    return found
+
+
+def _row(path: str | Path, number: int, line: str) -> tuple[str, float, float]:
+    try:
+        name, displacement, shear = line.split(",")
+        row = name.strip(), float(displacement), float(shear)
+    except ValueError:
+        row = "", np.nan, np.nan
+    if not np.all(np.isfinite(row[1:])):
+        raise MeasurementError(f"{path}, point {number}: '{line}' is not a series and two numbers; correct it")
+    return row
+
+
+def pin_jointed(displacement: Array, length: float, stretch: Array | float = 0.0) -> Array:
+    """Shear (n,) deg at ``displacement`` (n,) mm of a net whose yarns are longer by the strain ``stretch``."""
+    cosine = (length + displacement) / (np.sqrt(2.0) * length * (1.0 + np.asarray(stretch)))
+    shear: Array = 90.0 - 2.0 * np.rad2deg(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    return shear
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter: where to start looking for it, and what is physically plausible, in ``unit``."""
+
+    name: str
+    unit: str
+    starts: tuple[float, ...]
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class CurveEffect:
+    """What the pin-jointed theory may lack: a model of the curve and its parameters."""
+
+    name: str
+    summary: str
+    model: Model
+    parameters: tuple[Parameter, ...] = ()
+    single: bool = True
+    """Whether it is one cause and not a combination."""
+
+
+_SLACK = Parameter("slack", "mm", (5.0,), 0.0, 8.0)
+_SHARE = Parameter("share", "", (0.1,), 0.0, 0.3)
+_ONSETS = (10.0, 30.0, 50.0)
+
+
+def _saturation(d: Array, p: Array, length: float) -> Array:
+    shear = pin_jointed(d, length)
+    return shear - p[0] * np.maximum(shear - p[1], 0.0)
+
+
+EFFECTS = {
+    effect.name: effect
+    for effect in (
+        CurveEffect("pin-jointed", "nothing is missing", lambda d, p, length: pin_jointed(d, length)),
+        CurveEffect(
+            "pre-shear",
+            "the cloth was sheared before the test",
+            lambda d, p, length: pin_jointed(d, length) + p[0],
+            (Parameter("shear", "deg", (-1.0,), -3.0, 3.0),),
+        ),
+        CurveEffect(
+            "clamp slack",
+            "the clamps move before the cloth does",
+            lambda d, p, length: pin_jointed(d - p[0], length),
+            (_SLACK,),
+        ),
+        CurveEffect(
+            "constant extension",
+            "yarns are longer than thought, by straightened crimp",
+            lambda d, p, length: pin_jointed(d, length, p[0]),
+            (Parameter("strain", "", (0.01,), 0.0, 0.02),),
+        ),
+        CurveEffect(
+            "saturation",
+            "beyond an onset a share of the shear is resisted (locking)",
+            _saturation,
+            (Parameter("share", "", (0.1, 0.4), 0.0, 1.0), Parameter("onset", "deg", (5.0, 25.0), -2.0, 60.0)),
+        ),
+        CurveEffect(
+            "growing extension",
+            "yarns stretch in proportion to the displacement",
+            lambda d, p, length: pin_jointed(d, length, p[0] * d / 100.0),
+            (Parameter("strain per 100 mm", "", (0.01,), 0.0, 0.02),),
+        ),
+        CurveEffect(
+            "slip",
+            "a share of the displacement is slip at the crossings",
+            lambda d, p, length: pin_jointed(d * (1.0 - p[0]), length),
+            (_SHARE,),
+        ),
+        CurveEffect(
+            "slack + slip from an onset",
+            "the clamps slack, and slip sets in at a displacement",
+            lambda d, p, length: pin_jointed(d - p[0] - p[1] * np.maximum(d - p[2], 0.0), length),
+            (_SLACK, _SHARE, Parameter("onset", "mm", _ONSETS, 0.0, 120.0)),
+            single=False,
+        ),
+    )
+}
+"""The effects for a curve, by name; the first is the theory itself."""

@@ -1,0 +1,103 @@
+"""``geomdrap blind``: make, solve, reveal."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from geomdrap.blind import draw, files, unseal
+from geomdrap.cli import blind as commands
+from geomdrap.cli import cli
+
+
+def run(*arguments):
+    done = CliRunner().invoke(cli, ["blind", *map(str, arguments)])
+    return done.exit_code, done.stdout, done.stderr
+
+
+class Found:
+    """A diagnosis with a given verdict."""
+
+    def __init__(self, verdict):
+        self.verdict = verdict
+
+    def as_dict(self):
+        return {"verdict": self.verdict, "candidates": [self.verdict], "confidence": 0.9, "effects": []}
+
+
+def test_choices_offered_are_those_of_the_simulator():
+    assert draw.PLACEMENTS == commands.PLACEMENTS
+    assert tuple(files.COLUMNS) == commands.COLUMNS
+
+
+def test_make_prints_the_seal_and_not_the_truth(tmp_path):
+    code, out, _ = run("make", "--effect", "weave-skew", "--seed", 1, "-o", tmp_path / "set", "--json")
+    assert code == 0
+    made = json.loads(out)
+    assert made["seal"] == (tmp_path / "set" / "seal.txt").read_text().strip()
+    assert "skew" not in out
+
+
+def test_a_set_without_a_seed_is_another_each_time(tmp_path):
+    run("make", "--effect", "none", "-o", tmp_path / "a")
+    run("make", "--effect", "none", "-o", tmp_path / "b")
+    assert unseal(tmp_path / "a")["seed"] != unseal(tmp_path / "b")["seed"]
+
+
+@pytest.mark.parametrize(("verdict", "exit_code"), [("weave-skew", 0), ("slip", 1)])
+def test_reveal_after_solve_exits_by_whether_the_verdict_was_right(tmp_path, monkeypatch, verdict, exit_code):
+    import geomdrap as gd
+
+    run("make", "--effect", "weave-skew", "--seed", 1, "-o", tmp_path)
+    monkeypatch.setattr(gd, "diagnose", lambda surface, measurement, **laid: Found(verdict), raising=False)
+    code, out, _ = run("solve", tmp_path)
+    assert code == 0
+    assert verdict in out
+    code, out, _ = run("reveal", tmp_path)
+    assert code == exit_code
+    assert "hidden  weave-skew" in out
+    code, out, _ = run("reveal", tmp_path, "--json")
+    assert (code, json.loads(out)["verdict"]) == (exit_code, verdict)
+
+
+def test_an_unsolved_set_is_revealed_only_anyway(tmp_path):
+    run("make", "--effect", "none", "--seed", 1, "-o", tmp_path)
+    code, _, err = run("reveal", tmp_path)
+    assert code == 2
+    assert "not solved" in err
+    code, out, _ = run("reveal", tmp_path, "--anyway")
+    assert code == 0
+    assert "hidden  none" in out
+    code, _, err = run("solve", tmp_path)
+    assert code == 2
+    assert "revealed" in err
+
+
+def test_a_new_set_in_an_old_folder_is_not_solved(tmp_path, monkeypatch):
+    import geomdrap as gd
+
+    monkeypatch.setattr(gd, "diagnose", lambda surface, measurement, **laid: Found("none"), raising=False)
+    run("make", "--effect", "none", "-o", tmp_path)
+    run("solve", tmp_path)
+    run("make", "--effect", "none", "-o", tmp_path)
+    assert run("reveal", tmp_path)[0] == 2
+
+
+def test_bad_input_is_one_line(tmp_path):
+    code, _, err = run("make", "--effect", "gremlins", "-o", tmp_path / "set")
+    assert code == 2
+    assert len(err.strip().splitlines()) == 1
+    code, _, err = run("solve", tmp_path)
+    assert code == 2
+    assert "seal.txt" in err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("effect", ["none", "weave-skew"])
+def test_a_plain_set_is_solved_right_by_the_product_itself(tmp_path, effect):
+    made = ["--effect", effect, "--seed", 1, "--scatter", 0, "--outliers", 0, "--placement", "right"]
+    run("make", *made, "-o", tmp_path)
+    assert run("solve", tmp_path, "-q")[0] == 0
+    assert run("reveal", tmp_path)[0] == 0
