@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.fields.gradient import bend_cells, complete_ends, shear_gradients
 from geomdrap.fields.refine import Refined, refine
-from geomdrap.fields.spread import by_net, continue_beyond
+from geomdrap.fields.spread import by_net
+from geomdrap.fields.strip import continue_beyond
 from geomdrap.fishnet import Status
 
 if TYPE_CHECKING:
@@ -61,9 +63,12 @@ def trim(net: Net) -> Trimmed:
         start_pq,
         net.pitch,
     )
+    gradient = shear_gradients(np.radians(net.cell_shear))
+    yarns = complete_ends(net.yarns, net.lattice_valid, gradient)
+    bend_cells(vertex_at, yarns, gradient)
     at, kind, tangent, stopped = continue_beyond(
         mesh.points, mesh.triangles, mesh.neighbours, mesh.neighbour_edge, part.normals[mesh.parent],
-        vertex_at, net.yarns, net.lattice_valid, net.status_around, REFUSED, net.pitch,
+        vertex_at, yarns, gradient, net.lattice_valid, net.status_around, REFUSED, net.pitch,
     )  # fmt: skip
     at = np.array([net.u[0], net.v[0]]) + at * net.pitch
     share = (kind > 0).astype(float)
