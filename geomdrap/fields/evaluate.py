@@ -52,11 +52,12 @@ def evaluate(net: Net, limit_angle: float | None = None) -> Drape:
 def doubts(flat: FlatPattern, checks: Checks, area: Areas) -> tuple[str, ...]:
     """Sentences on what of the result should not be trusted as it is."""
     found = []
-    crossings = self_crossings((*flat.outer, *flat.inner))
+    crossings, (u, v) = self_crossings((*flat.outer, *flat.inner))
     if crossings:
         found.append(
-            f"the flat pattern crosses itself in {crossings} places and cannot be cut like this: the fabric shears "
-            "too far or folds there; use another origin or heading, a smaller pitch, or plan a dart"
+            f"the flat pattern crosses itself in {crossings} places, as at u = {u:.1f}, v = {v:.1f} mm, and cannot "
+            "be cut like this: the fabric shears too far or folds there; use another origin or heading, a smaller "
+            "pitch, or plan a dart"
         )
     if checks.curvature_residual is not None and checks.curvature_residual > MOST_RESIDUAL:
         found.append(

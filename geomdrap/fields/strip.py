@@ -148,12 +148,13 @@ def continue_beyond(
     points: np.ndarray, triangles: np.ndarray, neighbours: np.ndarray, neighbour_edge: np.ndarray,
     normals: np.ndarray, vertex_at: np.ndarray, yarns: np.ndarray, gradient: np.ndarray, valid: np.ndarray,
     status: np.ndarray, refused: np.ndarray, side: float,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Coordinates at the corners of all facets, in the net and in the strip beyond it.
 
     ``yarns`` (2, nu, nv, 3) with their ends completed, ``gradient`` (nu - 1, nv - 1, 2) of the shear, rad per cell.
     Returns ``at`` (m, 3, 2) cells, ``kind`` (m,) BARE, BY_NET or BEYOND, ``tangent`` (m, 2, 3) mm per cell along warp
-    and weft in the facet's plane, and ``stopped`` (m,), the status that keeps a facet bare.
+    and weft in the facet's plane, ``stopped`` (m,), the status that keeps a facet bare, and the draped facets in the
+    order in which they were reached.
     """
     m = len(triangles)
     at, tangent = np.full((m, 3, 2), np.nan), np.full((m, 2, 3), np.nan)
@@ -198,4 +199,4 @@ def continue_beyond(
             kind[g] = BEYOND
             queue[tail] = g
             tail += 1
-    return at, kind, tangent, stopped
+    return at, kind, tangent, stopped, queue[:tail]

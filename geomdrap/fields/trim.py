@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.fields.cuttable import make_cuttable
 from geomdrap.fields.gradient import bend_cells, complete_ends, shear_gradients
 from geomdrap.fields.refine import Refined, refine
 from geomdrap.fields.spread import by_net
@@ -44,42 +45,35 @@ def trim(net: Net) -> Trimmed:
     """Spread the net's fabric coordinates over the part, out to its rim or to the blank's."""
     part = net.surface
     mesh = refine(part.points, part.triangles, part.neighbours, part.neighbour_edge, FINE * net.pitch)
-    cross = np.cross(
-        mesh.points[mesh.triangles[:, 1]] - mesh.points[mesh.triangles[:, 0]],
-        mesh.points[mesh.triangles[:, 2]] - mesh.points[mesh.triangles[:, 0]],
-    )
-    area = 0.5 * np.linalg.norm(cross, axis=1)
-    m = len(area)
+    corners = mesh.points[mesh.triangles]
+    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     if min(net.lattice_valid.shape) == 0:
         return _all_bare(mesh, area, Status.TOO_NARROW)
-    starts, start_pq = _starts(net, mesh)
-    vertex_at = by_net(
-        mesh.points,
-        mesh.triangles,
-        mesh.neighbours,
-        net.lattice,
-        net.lattice_valid,
-        starts,
-        start_pq,
-        net.pitch,
-    )
-    gradient = shear_gradients(np.radians(net.cell_shear))
-    yarns = complete_ends(net.yarns, net.lattice_valid, gradient)
-    bend_cells(vertex_at, yarns, gradient)
-    at, kind, tangent, stopped = continue_beyond(
-        mesh.points, mesh.triangles, mesh.neighbours, mesh.neighbour_edge, part.normals[mesh.parent],
-        vertex_at, yarns, gradient, net.lattice_valid, net.status_around, REFUSED, net.pitch,
-    )  # fmt: skip
-    at = np.array([net.u[0], net.v[0]]) + at * net.pitch
-    share = (kind > 0).astype(float)
+    cells, kind, tangent, stopped, reached = _spread(net, mesh)
+    cells += np.array([net.u[0], net.v[0]]) / net.pitch
+    cells, kind, stopped = make_cuttable(net, mesh, cells, kind, stopped, reached)
+    at, share = cells * net.pitch, (kind > 0).astype(float)
     reason = np.where(kind > 0, np.uint8(Status.PRESENT), np.where(stopped > 0, stopped, np.uint8(Status.UNREACHED)))
     if net.reach is not None:
         share *= _share_in_blank(at, net.reach)
         reason = np.where((kind > 0) & (share == 0.0), np.uint8(Status.BLANK), reason)
         kind = np.where(share > 0.0, kind, 0).astype(np.uint8)
-    reason = _spread_reasons(reason, mesh.neighbours, net)
-    assert len(reason) == m
-    return Trimmed(mesh, at, kind, tangent / net.pitch, area, share, reason)
+    at[kind == 0], tangent[kind == 0] = np.nan, np.nan
+    return Trimmed(mesh, at, kind, tangent / net.pitch, area, share, _spread_reasons(reason, mesh.neighbours, net))
+
+
+def _spread(net: Net, mesh: Refined) -> tuple[np.ndarray, ...]:
+    """Coordinates in cells from the first node, kinds, tangents, what stops: see ``continue_beyond``."""
+    points, triangles, neighbours = mesh.points, mesh.triangles, mesh.neighbours
+    lattice, valid, side = net.lattice, net.lattice_valid, net.pitch
+    vertex_at = by_net(points, triangles, neighbours, lattice, valid, *_starts(net, mesh), side)
+    gradient = shear_gradients(np.radians(net.cell_shear))
+    yarns = complete_ends(net.yarns, valid, gradient)
+    bend_cells(vertex_at, yarns, gradient)
+    return continue_beyond(
+        points, triangles, neighbours, mesh.neighbour_edge, net.surface.normals[mesh.parent],
+        vertex_at, yarns, gradient, valid, net.status_around, REFUSED, side,
+    )  # fmt: skip
 
 
 def _all_bare(mesh: Refined, area: np.ndarray, why: Status) -> Trimmed:
