@@ -28,7 +28,7 @@ def make_cuttable(
     outline crosses nothing, nothing lies double, and no more is looked for. Within the net facets may fold over,
     where its cells are too coarse for the part; its outline does not show it, and no hole is cut for it.
     """
-    at = with_common_corners(at, kind, mesh.neighbours, mesh.neighbour_edge)
+    at = with_common_corners(at, kind, mesh.triangles, mesh.neighbours, mesh.neighbour_edge)
     kind, stopped = kind.copy(), stopped.copy()
 
     def leave(facets: np.ndarray, why: Status) -> None:

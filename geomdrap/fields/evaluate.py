@@ -14,6 +14,8 @@ from geomdrap.fields.trim import Trimmed, trim
 from geomdrap.fishnet import Status
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from geomdrap.fishnet import Net
 
 MOST_RESIDUAL = 1.0  # degrees of curvature residual above which the pitch is called coarse
@@ -21,21 +23,28 @@ LEAST_FABRIC = 0.995  # of the draped area: sheared fabric covers less than its 
 LEAST_BARE = 1e-4  # of the part: smaller bare specks are counted in the coverage but not listed
 
 
-def evaluate(net: Net, limit_angle: float | None = None) -> Drape:
+def evaluate(
+    net: Net, limit_angle: float | None = None, progress: Callable[[float], None] = lambda _: None
+) -> Drape:
     """Fields, flat pattern, areas, bare regions, statistics and checks of a net.
 
-    ``limit_angle`` degrees; the fabric's own if None. Raises DrapeError for a limit angle out of range.
+    ``limit_angle`` degrees; the fabric's own if None. ``progress`` is called with the share done, 0 to 1.
+    Raises DrapeError for a limit angle out of range.
     """
     from dataclasses import replace
 
     limit = (
         net.fabric.limit_angle if limit_angle is None else replace(net.fabric, limit_angle=limit_angle).limit_angle
     )
-    trimmed = trim(net)
+    trimmed = trim(net, lambda share: progress(0.65 * share))
     warp, weft = unit_directions(trimmed)
     shear = np.degrees(np.arcsin(np.clip((warp * weft).sum(axis=1), -1.0, 1.0)))
     faces = _per_face(net, trimmed, warp, weft)
-    flat, checks = flat_pattern(net, trimmed, limit), check_net(net, trimmed)
+    progress(0.75)
+    flat = flat_pattern(net, trimmed, limit)
+    progress(0.85)
+    checks = check_net(net, trimmed)
+    progress(0.95)
     return Drape(
         net=net,
         limit_angle=limit,

@@ -39,25 +39,49 @@ def groups(a: np.ndarray, b: np.ndarray, n: int) -> np.ndarray:
 
 
 def with_common_corners(
-    at: np.ndarray, kind: np.ndarray, neighbours: np.ndarray, neighbour_edge: np.ndarray
+    at: np.ndarray, kind: np.ndarray, triangles: np.ndarray, neighbours: np.ndarray, neighbour_edge: np.ndarray
 ) -> np.ndarray:
     """Coordinates ``at`` (m, 3, 2) with those of corners that are one in the fabric made equal: their mean.
 
     In the strip facets reached on two ways give a corner two places a little apart, within what ``is_open`` allows.
     """
-    f, k = joints(at, kind, neighbours, neighbour_edge)
-    g, e = neighbours[f, k].astype(np.int64), neighbour_edge[f, k].astype(np.int64)
-    a = np.concatenate([3 * f + k, 3 * f + (k + 1) % 3])
-    b = np.concatenate([3 * g + (e + 1) % 3, 3 * g + e])
-    corners = at.reshape(-1, 2)
-    if (corners[a] == corners[b]).all():
+    uneven = uneven_vertices(at, kind, triangles, neighbours, neighbour_edge)
+    if not uneven.any():
         return at
+    facets = np.flatnonzero(uneven[triangles].any(axis=1))
+    number = np.full(len(kind), -1)
+    number[facets] = np.arange(len(facets))
+    f, k = joints(at, kind, neighbours, neighbour_edge)
+    g, e = neighbours[f, k], neighbour_edge[f, k].astype(np.int64)
+    among = (number[f] >= 0) & (number[g] >= 0)
+    f, g, k, e = 3 * number[f[among]], 3 * number[g[among]], k[among], e[among]
+    a, b = np.concatenate([f + k, f + (k + 1) % 3]), np.concatenate([g + (e + 1) % 3, g + e])
+    corners = np.nan_to_num(at[facets].reshape(-1, 2))
     group = groups(a, b, len(corners))
     size = np.bincount(group)
-    mean = np.column_stack([np.bincount(group, np.nan_to_num(x)) / size for x in corners.T])
-    apart = np.zeros(len(size), bool)
-    apart[group[a[(corners[a] != corners[b]).any(axis=1)]]] = True
-    return np.where(apart[group][:, None], mean[group], corners).reshape(at.shape)
+    mean = np.column_stack([np.bincount(group, x) / size for x in corners.T])
+    moved = (uneven[triangles[facets]] & (kind[facets] > 0)[:, None]).ravel()
+    out = at.copy()
+    out[facets] = np.where(moved[:, None], mean[group], at[facets].reshape(-1, 2)).reshape(-1, 3, 2)
+    return out
+
+
+@kernel
+def uneven_vertices(
+    at: np.ndarray, kind: np.ndarray, triangles: np.ndarray, neighbours: np.ndarray, neighbour_edge: np.ndarray
+) -> np.ndarray:
+    """Vertices (n,) whose coordinates differ across an edge over which the fabric is whole."""
+    out = np.zeros(triangles.max() + 1, np.bool_)
+    for f in range(len(kind)):
+        for k in range(3):
+            g = neighbours[f, k]
+            if kind[f] == 0 or g < f or is_open(at, kind, neighbours, neighbour_edge, f, k):
+                continue
+            for n in range(2):
+                mine, its = (k + n) % 3, (neighbour_edge[f, k] + 1 - n) % 3
+                if at[f, mine, 0] != at[g, its, 0] or at[f, mine, 1] != at[g, its, 1]:
+                    out[triangles[f, mine]] = True
+    return out
 
 
 def on_outline(at: np.ndarray, kind: np.ndarray, neighbours: np.ndarray, neighbour_edge: np.ndarray) -> np.ndarray:

@@ -96,3 +96,20 @@ def test_kernels_of_another_python_do_not_count(tmp_path: Path, monkeypatch: pyt
     (tmp_path / "fishnet_0a1b").mkdir()
     (tmp_path / "fishnet_0a1b" / "march.walk-1.py27.nbi").touch()
     assert not kernels_are_compiled()
+
+
+def test_evaluating_and_writing_tell_their_shares_in_small_steps(tmp_path: Path) -> None:
+    import geomdrap as gd
+    from geomdrap.export.outputs import write_all
+    from geomdrap.surface import shapes
+
+    evaluating: list[float] = []
+    writing: list[float] = []
+    net = gd.drape(shapes.sphere_cap(100.0, 50.0, 8.0), "centroid", 20.0, 8.0)
+    result = gd.evaluate(net, progress=evaluating.append)
+    write_all(result, tmp_path / "all", progress=writing.append)
+    for shares in (evaluating, writing):
+        assert shares == sorted(shares)
+        steps = [b - a for a, b in zip([0.0, *shares], [*shares, 1.0], strict=True)]
+        assert max(steps) < 0.35
+    assert writing[-1] == pytest.approx(1.0)
