@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from geomdrap.fields.gradient import gradient_near, turn_by
-from geomdrap.fields.spread import JUMP, fits, stretch, tangents_at, unit
+from geomdrap.fields.spread import fits, stretch, tangents_at, unit
 from geomdrap.geodesic.compiled import kernel
 
 BARE, BY_NET, BEYOND = 0, 1, 2
@@ -21,6 +21,7 @@ IS_BLANK, IS_TOO_NARROW, IS_TOO_SHEARED = 8, 9, 10  # values of Status
 # flat area over area in the strip: 1 / cos(shear) up to 75°, and some room
 LEAST_STRETCH, MOST_STRETCH = 0.5, 4.0
 NEARLY_PARALLEL = 0.9  # sine of the shear, 64°
+MEETS = 0.8  # cells: a corner reached on two ways, no further apart than this, is one corner
 BEYOND_NET = 2  # cells: corners of the part turned to the yarns stick out by more than one
 
 
@@ -180,7 +181,7 @@ def continue_beyond(
             start[1] = (at[f, 0, 1] + at[f, 1, 1] + at[f, 2, 1]) / 3.0
             p, q = third_corner(corners, normals[g], ends, start, turned, gradient, tangent[g])
             known = vertex_at[triangles[g, o]]
-            if not math.isnan(known[0]) and abs(known[0] - p) < JUMP and abs(known[1] - q) < JUMP:
+            if not math.isnan(known[0]) and abs(known[0] - p) < MEETS and abs(known[1] - q) < MEETS:
                 p, q = known[0], known[1]
                 stop = 0
             else:

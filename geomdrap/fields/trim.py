@@ -103,7 +103,7 @@ def _share_in_blank(at: np.ndarray, reach: tuple[float, float]) -> np.ndarray:
     for f in np.flatnonzero(~inside & (least[:, 0] < reach[0]) & (least[:, 1] < reach[1])):
         cut = clip_to_rectangle(at[f], reach)
         whole = signed_area(at[f])
-        share[f] = signed_area(cut) / whole if len(cut) and whole > 0.0 else 0.0
+        share[f] = signed_area(cut) / whole if len(cut) and whole != 0.0 else 0.0
     return share
 
 
