@@ -157,7 +157,7 @@ def bare_regions(trimmed: Trimmed) -> tuple[BareRegion, ...]:
 
 
 def statistics(net: Net, trimmed: Trimmed, shear: np.ndarray, limit: float) -> ShearStatistics:
-    """Shear statistics: the largest of the cells, the rest weighted by area of the part."""
+    """Shear statistics: the largest of cells and facets, which reach out to the rim; the rest weighted by area."""
     on = trimmed.share > 0.0
     size, weight = np.abs(shear[on]), (trimmed.area * trimmed.share)[on]
     if not on.any() or not np.isfinite(net.cell_shear).any():
@@ -165,7 +165,7 @@ def statistics(net: Net, trimmed: Trimmed, shear: np.ndarray, limit: float) -> S
     order = np.argsort(size)
     cumulated = np.cumsum(weight[order]) / weight.sum()
     return ShearStatistics(
-        max=float(np.nanmax(np.abs(net.cell_shear))),
+        max=float(max(np.nanmax(np.abs(net.cell_shear)), size.max())),
         p95=float(size[order][min(np.searchsorted(cumulated, 0.95), len(order) - 1)]),
         mean=float((size * weight).sum() / weight.sum()),
         over_half_limit=float(weight[size > 0.5 * limit].sum() / weight.sum()),

@@ -28,18 +28,20 @@ def lesser(a: float, b: float) -> float:
 def slope(shear: np.ndarray, i: int, j: int, di: int, dj: int) -> float:
     """Growth per cell of ``shear`` (nu - 1, nv - 1) at cell (i, j) toward +(di, dj), NaN where nothing tells.
 
-    At the rim of the net from the two differences behind it, which makes the extrapolation second order.
+    At the rim of the net from the differences behind it, which makes the extrapolation second order. There are three
+    of them: a jump between two cells, as behind the tip of a cone, gives two of one sign.
     """
-    steps = np.full(4, math.nan)  # differences from cell -2 to -1, -1 to 0, 0 to 1, 1 to 2
-    for n in range(4):
-        k, m = i + (n - 2) * di, j + (n - 2) * dj
+    steps = np.full(6, math.nan)  # differences from cell -3 to -2, ..., 2 to 3
+    for n in range(6):
+        k, m = i + (n - 3) * di, j + (n - 3) * dj
         if k >= 0 and m >= 0 and k + di < shear.shape[0] and m + dj < shear.shape[1]:
             steps[n] = shear[k + di, m + dj] - shear[k, m]
-    if math.isnan(steps[1]):
-        return steps[2] if math.isnan(steps[2]) else lesser(steps[2], steps[3])
-    if math.isnan(steps[2]):
-        return lesser(steps[1], steps[0])
-    return lesser(steps[1], steps[2])
+    before, after = steps[2], steps[3]
+    if math.isnan(before):
+        return after if math.isnan(after) else lesser(after, lesser(steps[4], steps[5]))
+    if math.isnan(after):
+        return lesser(before, lesser(steps[1], steps[0]))
+    return lesser(before, after)
 
 
 @kernel
