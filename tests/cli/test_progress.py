@@ -59,6 +59,19 @@ def test_a_slow_step_shows_its_name_and_share_and_is_wiped_away(monkeypatch: pyt
     assert screen.getvalue().endswith("\r\x1b[K")
 
 
+def test_a_step_without_shares_counts_its_seconds_and_no_longer_than_it_lasts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(progress, "_TICK", 0.02)
+    with _terminal(monkeypatch, patience=0.01) as screen, Progress() as steps:
+        steps.step("Draping")
+        time.sleep(0.2)
+        steps.step("Evaluating")
+        drawn = screen.getvalue()
+        assert drawn.count("Draping ... 0 s") > 2
+        steps.share(0.5)
+        time.sleep(0.1)
+    assert "Draping" not in screen.getvalue()[len(drawn) :]
+
+
 def test_quiet_shows_nothing_even_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     with _terminal(monkeypatch, patience=0.0) as screen, Progress(quiet=True) as steps:
         steps.step("Draping")
