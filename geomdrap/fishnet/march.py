@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from geomdrap.fishnet.cell import CLOSED, FOLDED, OFF_PART, close_cell
+from geomdrap.fishnet.cell import CLOSED, FOLDED, NOT_CLOSED, OFF_PART, close_cell
 from geomdrap.fishnet.grid import PIECES, STATUS, TRIED, Grid
+from geomdrap.fishnet.pivot import close_round_vertices
 from geomdrap.fishnet.place import (
     PRESENT,
     add_piece,
@@ -144,7 +145,7 @@ def try_cell(mesh: Mesh, grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
     xb, yb = grid.node[k, j, 0], grid.node[k, j, 1]
     xd, yd = grid.node[i, m, 0], grid.node[i, m, 1]
     lb, ld = side_between(grid, k, j, 0, sv), side_between(grid, i, m, su, 0)
-    state, face, x, y, obx, oby, abx, aby, odx, ody, adx, ady = close_cell(
+    cell = (
         mesh.row,
         mesh.link,
         mesh.frames,
@@ -162,6 +163,9 @@ def try_cell(mesh: Mesh, grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
         ld,
         sense,
     )
+    state, face, x, y, obx, oby, abx, aby, odx, ody, adx, ady = close_cell(*cell)
+    if state == NOT_CLOSED:
+        state, face, x, y, obx, oby, abx, aby, odx, ody, adx, ady = close_round_vertices(*cell)
     if known:  # two fronts meet
         if state != CLOSED or not same_place(mesh, grid, k, m, face, x, y, lb):
             return False
