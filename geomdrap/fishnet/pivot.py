@@ -64,7 +64,12 @@ def turn_line(lines: np.ndarray, side: int, angle_rad: float) -> None:
 
 @kernel
 def vertex_between(
-    row: np.ndarray, link: np.ndarray, face: int, line: np.ndarray, right: tuple[float, float], left: tuple[float, float]
+    row: np.ndarray,
+    link: np.ndarray,
+    face: int,
+    line: np.ndarray,
+    right: tuple[float, float],
+    left: tuple[float, float],
 ) -> tuple[int, int, float, float, float, float]:
     """Vertex that two lines from one point pass on its right and on its left, before they end.
 
@@ -81,7 +86,8 @@ def vertex_between(
         if entered < 0:
             k, m = first_exit(row, face, ax, ay, ux, uy, tie), first_exit(row, face, bx, by, wx, wy, tie)
         else:
-            k, m = next_exit(row, face, entered, ax, ay, ux, uy, tie), next_exit(row, face, entered, bx, by, wx, wy, tie)
+            k = next_exit(row, face, entered, ax, ay, ux, uy, tie)
+            m = next_exit(row, face, entered, bx, by, wx, wy, tie)
         if k != m:
             corner = m if m == after(k) else k
             vx, vy = row[face, 2 * corner] - ax, row[face, 2 * corner + 1] - ay
@@ -141,7 +147,7 @@ def pivot(
 def improve(
     row: np.ndarray, link: np.ndarray, faces: np.ndarray, lines: np.ndarray, left: np.ndarray, side: int, turn: float
 ) -> None:
-    """Turn a side as it asks, but never beyond a heading that asked for the way back; pivot where two of them meet."""
+    """Turn a side as it asks, but not beyond a heading that asked for the way back; pivot where two of them meet."""
     at = RIGHT if turn > 0.0 else LEFT
     here = lines[side, TURNED]
     lines[side, at] = here
