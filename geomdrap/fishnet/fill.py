@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from geomdrap.fishnet.grid import TRIED, Grid
+from geomdrap.fishnet.grid import PIECES, TRIED, Grid
 from geomdrap.fishnet.march import DOUBTFUL, NOTHING, SENSES, inside, is_open, try_cell
-from geomdrap.fishnet.place import departure, settle
+from geomdrap.fishnet.place import WARP_PIECE, WEFT_PIECE, departure, has_piece, settle
 from geomdrap.geodesic.compiled import inlined, kernel
 from geomdrap.geodesic.mesh import Mesh
 
@@ -85,17 +85,20 @@ def close_from(mesh: Mesh, grid: Grid, i0: int, j0: int, nodes: np.ndarray, clai
 
 
 @kernel
-def all_nodes(grid: Grid) -> np.ndarray:
-    """The nodes of the net (n, 2)."""
+def edge_nodes(grid: Grid) -> np.ndarray:
+    """The nodes (n, 2) from which less than four pieces go."""
+    nodes = np.empty((256, 2), np.int64)
     count = 0
     for i in range(grid.box[0], grid.box[1] + 1):
         for j in range(grid.box[2], grid.box[3] + 1):
-            count += grid.face[i, j] > 0
-    nodes = np.empty((count, 2), np.int64)
-    count = 0
-    for i in range(grid.box[0], grid.box[1] + 1):
-        for j in range(grid.box[2], grid.box[3] + 1):
-            if grid.face[i, j] > 0:
-                nodes[count, 0], nodes[count, 1] = i, j
-                count += 1
-    return nodes
+            if grid.face[i, j] == 0 or (
+                grid.marks[i, j, PIECES] == WARP_PIECE | WEFT_PIECE
+                and has_piece(grid, i, j, -1, 0)
+                and has_piece(grid, i, j, 0, -1)
+            ):
+                continue
+            if count == len(nodes):
+                nodes = np.concatenate((nodes, np.empty_like(nodes)))
+            nodes[count, 0], nodes[count, 1] = i, j
+            count += 1
+    return nodes[:count]

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from geomdrap.fishnet.fill import all_nodes, close_from
+from geomdrap.fishnet.fill import close_from, edge_nodes
 from geomdrap.fishnet.grid import STATUS, Grid
 from geomdrap.fishnet.march import (
     IS_BEHIND_FOLD,
@@ -140,19 +140,25 @@ def look_ahead(mesh: Mesh, grid: Grid, known: np.ndarray) -> None:
 
     ``known`` (4, nu, nv) keeps what was counted before. A place that no yarn leads to takes the reason.
     """
-    i0, i1, j0, j1 = grid.box[0], grid.box[1], grid.box[2], grid.box[3]
-    for i in range(i0, i1 + 1):
-        for j in range(j0, j1 + 1):
+    looked_at = np.empty((64, 2), np.int64)
+    count = 0
+    for i in range(grid.box[0], grid.box[1] + 1):
+        for j in range(grid.box[2], grid.box[3] + 1):
             if grid.face[i, j] == 0 or surrounded(grid, i, j):
                 continue
             for a in range(4):
-                if known[a, i, j] == 0 and leads_on(grid, i, j, STEP_I[a], STEP_J[a]):
-                    sides = sides_ahead(mesh, grid, i, j, STEP_I[a], STEP_J[a])
+                di, dj = STEP_I[a], STEP_J[a]
+                if known[a, i, j] == 0 and leads_on(grid, i, j, di, dj):
+                    sides = sides_ahead(mesh, grid, i, j, di, dj)
                     known[a, i, j] = 1 + sides if sides >= 0 else sides - 1
-    for i in range(max(i0 - 1, 0), min(i1 + 2, grid.face.shape[0])):
-        for j in range(max(j0 - 1, 0), min(j1 + 2, grid.face.shape[1])):
-            if grid.marks[i, j, STATUS] == UNREACHED:
-                grid.marks[i, j, STATUS] = why_not(grid, i, j, known)
+                    if count == len(looked_at):
+                        looked_at = np.concatenate((looked_at, np.empty_like(looked_at)))
+                    looked_at[count, 0], looked_at[count, 1] = i + di, j + dj
+                    count += 1
+    for n in range(count):
+        i, j = looked_at[n, 0], looked_at[n, 1]
+        if grid.marks[i, j, STATUS] == UNREACHED:
+            grid.marks[i, j, STATUS] = why_not(grid, i, j, known)
 
 
 @inlined
@@ -244,7 +250,7 @@ def carry_front_on(mesh: Mesh, grid: Grid, i0: int, j0: int) -> int:
     claims = np.zeros(grid.face.shape, np.int32)
     ways = np.empty((MOST_WAYS, 3), np.int64)
     continued = 0
-    close_from(mesh, grid, i0, j0, all_nodes(grid), claims)
+    close_from(mesh, grid, i0, j0, edge_nodes(grid), claims)
     while True:
         look_ahead(mesh, grid, known)
         count, sides = next_ways_on(grid, i0, j0, known, ways)

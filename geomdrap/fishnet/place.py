@@ -28,13 +28,16 @@ WEFT_PIECE = 2
 
 # A node is refused where a node of another stretch of the net is within NEAR sides of it, sideways, on the same
 # sheet: SHEET sides along the normal, normals within 60°. Nodes up to APART in i and j are of one stretch, and so are
-# those between which the net goes straight on, in the lattice, within ONE_PATCH sides: where cells shear by 85°
-# nodes that are ten apart come as near as that.
+# those between which the net goes straight on, in the lattice, within ONE_PATCH sides: where cells shear by 80°
+# nodes that are four apart come as near as that. Nodes SQUEEZED apart do so where all cells between them shear by
+# 85°: there the net is folding.
 NEAR = 0.75
 SHEET = 0.35
 ROUND_EDGE = 0.5  # sides: nodes this close are on one sheet round an edge of up to 107°, too
 APART = 3
 ONE_PATCH = 1.0
+SQUEEZED = 8
+NEAR_FOLD = 16  # apart in i or j: two stretches that meet this near a fold between them need a dart there
 # Space is hashed in cubes of CUBE sides, each with the range of i and j that it holds: as long as no two of them are
 # more than APART from the node (``Grid.box[4]``), they need not be looked at one by one.
 CUBE = 4.0
@@ -51,7 +54,8 @@ def bucket_of(a: int, b: int, c: int, mask: int) -> int:
 def between(mesh: Mesh, grid: Grid, i: int, j: int, k: int, m: int, px: float, py: float, pz: float) -> int:
     """What lies straight between two nodes in the lattice: PRESENT where that is net near (px, py, pz) mm.
 
-    MEETS_ITSELF where the net leads away on its way from one to the other, BEHIND_FOLD where a fold parts them.
+    FOLDED where the net between them is squeezed together, BEHIND_FOLD where a fold parts them, MEETS_ITSELF where
+    the net leads away on its way from one to the other.
     """
     di, dj = k - i, m - j
     steps = max(abs(di), abs(dj))
@@ -61,14 +65,16 @@ def between(mesh: Mesh, grid: Grid, i: int, j: int, k: int, m: int, px: float, p
         a = i + (1 if di > 0 else -1) * ((2 * n * abs(di) + steps) // (2 * steps))
         b = j + (1 if dj > 0 else -1) * ((2 * n * abs(dj) + steps) // (2 * steps))
         status = grid.marks[a, b, STATUS]
-        if status in (FOLDED, BEHIND_FOLD):
+        if steps <= NEAR_FOLD and status in (FOLDED, BEHIND_FOLD):
             return BEHIND_FOLD
         if one and status == PRESENT:
             qx, qy, qz = in_space(mesh.frames, grid.face[a, b] - 1, grid.node[a, b, 0], grid.node[a, b, 1])
             one = (qx - px) ** 2 + (qy - py) ** 2 + (qz - pz) ** 2 <= most
         else:
             one = False
-    return PRESENT if one else MEETS_ITSELF
+    if not one:
+        return MEETS_ITSELF
+    return PRESENT if steps < SQUEEZED else FOLDED
 
 
 @kernel
@@ -104,8 +110,8 @@ def stranger_in(
             found = between(mesh, grid, i, j, k, m, px, py, pz)
             if found == MEETS_ITSELF:
                 return MEETS_ITSELF
-            if found == BEHIND_FOLD:
-                why = BEHIND_FOLD
+            if found != PRESENT:
+                why = max(why, found)
     return why
 
 
