@@ -6,6 +6,9 @@ vertex for ever. The shortest way into the wedge goes straight to the vertex and
 turn of faces on either hand. Such a side has its length to the last digit; its end moves round the vertex as that
 of another side does round its node, and that is how the cell is closed.
 
+Where sides jump over a vertex of positive deficit, the tip of a cone, there is no cell: the tip takes more angle out
+of it than it has.
+
 Source: J. S. B. Mitchell, D. M. Mount, C. H. Papadimitriou, The discrete geodesic problem, SIAM J. Comput. 16, 1987
 (shortest paths pass through such vertices only).
 """
@@ -46,6 +49,7 @@ from geomdrap.geodesic.vertex import go_straight_through, total_angle
 ROUNDS = 400
 NARROW = 1e-8  # radians: headings this close, of which either asks for the other's side, lie at a vertex
 STRAIGHT = 1e-6  # radians by which a side at a vertex may fall short of half a turn of faces on one hand
+DONE, NO_VERTEX, TIP = 0, 1, 2
 CROSSED = 100_000  # faces after which a side is given up
 
 # columns of ``lines``: the line of a side, its heading as an angle from the first one, and the headings known to lie
@@ -110,10 +114,11 @@ def vertex_between(
 @kernel
 def pivot(
     row: np.ndarray, link: np.ndarray, faces: np.ndarray, lines: np.ndarray, left: np.ndarray, side: int
-) -> bool:
-    """Let a side go on from the vertex that its two nearest headings pass on either hand; False if there is none.
+) -> int:
+    """Let a side go on from the vertex that its two nearest headings pass on either hand: DONE, NO_VERTEX or TIP.
 
-    ``left`` (2, 3) keeps the departures from the nodes and the half widths (radians) of the wedges behind vertices.
+    A TIP has a positive deficit: no line pivots there. ``left`` (2, 3) keeps the departures from the nodes and the
+    half widths (radians) of the wedges behind vertices.
     """
     headings = np.empty((2, 2))
     for n, at in enumerate((RIGHT, LEFT)):
@@ -123,14 +128,12 @@ def pivot(
         headings[n, 0], headings[n, 1] = c * x - s * y, s * x + c * y
     right, far = (headings[0, 0], headings[0, 1]), (headings[1, 0], headings[1, 1])
     face, corner, way, turn, dx, dy = vertex_between(row, link, faces[side], lines[side], right, far)
-    if face < 0:
-        return False
-    total = total_angle(row, link, face, corner)
+    total = total_angle(row, link, face, corner) if face >= 0 else -1.0
+    if total < 0.0:
+        return NO_VERTEX
     if total <= 2.0 * math.pi:
-        return False
+        return TIP
     beyond, at, ox, oy = go_straight_through(row, link, face, corner, dx, dy)
-    if beyond < 0:
-        return False
     if left[side, 2] == 0.0:
         c, s = math.cos(turn), math.sin(turn)
         left[side, 0], left[side, 1] = c * right[0] - s * right[1], s * right[0] + c * right[1]
@@ -140,14 +143,18 @@ def pivot(
     lines[side, DX], lines[side, DY] = ox, oy
     lines[side, LENGTH] -= way
     lines[side, TURNED], lines[side, RIGHT], lines[side, LEFT] = 0.0, -math.inf, math.inf
-    return True
+    return DONE
 
 
 @inlined
 def improve(
     row: np.ndarray, link: np.ndarray, faces: np.ndarray, lines: np.ndarray, left: np.ndarray, side: int, turn: float
-) -> None:
-    """Turn a side as it asks, but not beyond a heading that asked for the way back; pivot where two of them meet."""
+) -> bool:
+    """Turn a side as it asks, but not beyond a heading that asked for the way back; pivot where two of them meet.
+
+    True where they meet at the tip of a cone.
+    """
+    tip = False
     at = RIGHT if turn > 0.0 else LEFT
     here = lines[side, TURNED]
     lines[side, at] = here
@@ -155,12 +162,15 @@ def improve(
     if high <= low:  # the other side has moved on since
         lines[side, LEFT if turn > 0.0 else RIGHT] = math.inf if turn > 0.0 else -math.inf
     elif high - low < NARROW:
-        if pivot(row, link, faces, lines, left, side):
-            return
+        found = pivot(row, link, faces, lines, left, side)
+        if found == DONE:
+            return False
+        tip = found == TIP
         lines[side, RIGHT], lines[side, LEFT] = -math.inf, math.inf
     elif not low < here + turn < high:
         turn = 0.5 * (low + high) - here
     turn_line(lines, side, turn)
+    return tip
 
 
 @kernel
@@ -187,6 +197,7 @@ def close_round_vertices(
     faces = np.array([fb, fd])
     lines = np.array([[xb, yb, bx, by, lb, 0.0, -math.inf, math.inf], [xd, yd, dx, dy, ld, 0.0, -math.inf, math.inf]])
     left = np.zeros((2, 3))
+    tip = False
     state, end, cx, cy, nbx, nby, ndx, ndy = NOT_CLOSED, -1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for n in range(ROUNDS):
         lb, ld = lines[0, LENGTH], lines[1, LENGTH]
@@ -225,7 +236,9 @@ def close_round_vertices(
             side = 1
         elif abs(turn_d) * ld <= 0.1 * tolerance:
             side = 0
-        improve(row, link, faces, lines, left, side, turn_b if side == 0 else turn_d)
+        tip = improve(row, link, faces, lines, left, side, turn_b if side == 0 else turn_d) or tip
+    if tip and state == NOT_CLOSED:
+        state = FOLDED
     for side in range(2):
         if left[side, 2] > 0.0:
             if abs(lines[side, TURNED]) > left[side, 2] + STRAIGHT and state == CLOSED:
