@@ -167,7 +167,7 @@ def improve(
             return False
         tip = found == TIP
         lines[side, RIGHT], lines[side, LEFT] = -math.inf, math.inf
-    elif not low < here + turn < high:
+    elif not low < here + turn < high and math.isfinite(high - low):
         turn = 0.5 * (low + high) - here
     turn_line(lines, side, turn)
     return tip

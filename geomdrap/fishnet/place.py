@@ -20,6 +20,7 @@ from geomdrap.geodesic.compiled import inlined, kernel
 from geomdrap.geodesic.mesh import Mesh, in_space, normal_of
 
 PRESENT = 1
+OFF_PART = 2
 FOLDED = 4
 BEHIND_FOLD = 5
 MEETS_ITSELF = 6
@@ -37,7 +38,7 @@ ROUND_EDGE = 0.5  # sides: nodes this close are on one sheet round an edge of up
 APART = 3
 ONE_PATCH = 1.0
 SQUEEZED = 8
-NEAR_FOLD = 16  # apart in i or j: two stretches that meet this near a fold between them need a dart there
+NEAR_FOLD = 16  # apart in i or j: stretches that meet this near to what parts them need a dart there
 # Space is hashed in cubes of CUBE sides, each with the range of i and j that it holds: as long as no two of them are
 # more than APART from the node (``Grid.box[4]``), they need not be looked at one by one.
 CUBE = 4.0
@@ -54,24 +55,28 @@ def bucket_of(a: int, b: int, c: int, mask: int) -> int:
 def between(mesh: Mesh, grid: Grid, i: int, j: int, k: int, m: int, px: float, py: float, pz: float) -> int:
     """What lies straight between two nodes in the lattice: PRESENT where that is net near (px, py, pz) mm.
 
-    FOLDED where the net between them is squeezed together, BEHIND_FOLD where a fold parts them, MEETS_ITSELF where
-    the net leads away on its way from one to the other.
+    FOLDED where the net between them is squeezed together, or where they are near in the lattice and what lies
+    between them has no room on the part: they meet beyond the tip of a cone. BEHIND_FOLD where a fold parts them.
+    MEETS_ITSELF where the net leads away on its way from one to the other.
     """
     di, dj = k - i, m - j
     steps = max(abs(di), abs(dj))
     most = (ONE_PATCH * grid.sides_u[0]) ** 2
-    one = True
+    one, torn = True, False
     for n in range(1, steps):  # rounded away from (i, j), so that no sense of u or v is preferred
         a = i + (1 if di > 0 else -1) * ((2 * n * abs(di) + steps) // (2 * steps))
         b = j + (1 if dj > 0 else -1) * ((2 * n * abs(dj) + steps) // (2 * steps))
         status = grid.marks[a, b, STATUS]
         if steps <= NEAR_FOLD and status in (FOLDED, BEHIND_FOLD):
             return BEHIND_FOLD
+        torn = torn or (status != PRESENT and status != OFF_PART)
         if one and status == PRESENT:
             qx, qy, qz = in_space(mesh.frames, grid.face[a, b] - 1, grid.node[a, b, 0], grid.node[a, b, 1])
             one = (qx - px) ** 2 + (qy - py) ** 2 + (qz - pz) ** 2 <= most
         else:
             one = False
+    if torn and steps <= NEAR_FOLD:
+        return FOLDED
     if not one:
         return MEETS_ITSELF
     return PRESENT if steps < SQUEEZED else FOLDED

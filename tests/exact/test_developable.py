@@ -100,14 +100,11 @@ def test_a_cone_too_steep_for_a_ply_is_found_as_a_fold(seed):
 def test_a_cone_too_steep_for_a_ply_is_found_as_a_fold_from_any_seed():
     surface = shapes.cone(1.0, 150.0, 3.0)
     rng = np.random.default_rng(11)
-    for _ in range(12):
+    for _ in range(20):
         turn, away = rng.uniform(0.0, 2.0 * np.pi), rng.uniform(25.0, 90.0)
         seed = away * np.array([np.cos(turn), np.sin(turn), -1.0])
         net = gd.drape(surface, seed, rng.uniform(0.0, 360.0), 3.0, project=True)
-        folded = (net.status_around == Status.FOLDED) | (net.status_around == Status.BEHIND_FOLD)
-        assert (net.status_around == Status.FOLDED).any()
-        # around the rim wings that the cut sets free lie on each other; the cut itself is what leaves the tip bare
-        assert folded.sum() > 5 * (net.status_around == Status.MEETS_ITSELF).sum()
+        assert (net.status == Status.FOLDED).any()
 
 
 @pytest.mark.parametrize("seed", [(-50.0, -41.0, 0.0), (-60.0, -33.0, 0.0), (-30.0, -24.0, 0.0)])

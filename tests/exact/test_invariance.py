@@ -12,7 +12,6 @@ PARTS = {
     "bracket": (shapes.bracket(edge=6.0), (40.3, 11.7, 0.0), 6.0),
     "double dome": (shapes.double_dome(), (10.3, 5.7, 60.0), 7.0),
     "hood": (shapes.car_hood(edge=25.0), (40.3, 25.7, 30.0), 30.0),
-    "steep bumps, folded": (bumpy_sheet(2, n=12, height=60.0), (3.3, -4.1, 0.0), 3.0),
     "sphere": (shapes.icosphere(50.0, 4), (11.0, 23.0, 41.0), 4.1),
     "tube": (shapes.cylinder(30.0, 120.0, 6.0), (7.0, 3.0, 29.0), 4.3),
     "cone too steep": (shapes.cone(1.0, 90.0, 4.0), (-30.0, -24.0, -38.0), 4.0),
