@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.fields.pieces import require_few_pieces
 from geomdrap.fields.refine import Refined, refine
 from geomdrap.fields.spread import by_net, continue_beyond
 from geomdrap.fishnet import Status
@@ -41,6 +42,7 @@ class Trimmed:
 def trim(net: Net) -> Trimmed:
     """Spread the net's fabric coordinates over the part, out to its rim or to the blank's."""
     part = net.surface
+    require_few_pieces(part, FINE * net.pitch)
     mesh = refine(part.points, part.triangles, part.neighbours, part.neighbour_edge, FINE * net.pitch)
     cross = np.cross(
         mesh.points[mesh.triangles[:, 1]] - mesh.points[mesh.triangles[:, 0]],

@@ -174,7 +174,7 @@ def improve(
 
 
 @kernel
-def close_round_vertices(
+def close_round_vertices(  # noqa: PLR0912
     row: np.ndarray,
     link: np.ndarray,
     frames: np.ndarray,

@@ -69,7 +69,7 @@ def between(mesh: Mesh, grid: Grid, i: int, j: int, k: int, m: int, px: float, p
         status = grid.marks[a, b, STATUS]
         if steps <= NEAR_FOLD and status in (FOLDED, BEHIND_FOLD):
             return BEHIND_FOLD
-        torn = torn or (status != PRESENT and status != OFF_PART)
+        torn = torn or status not in (PRESENT, OFF_PART)
         if one and status == PRESENT:
             qx, qy, qz = in_space(mesh.frames, grid.face[a, b] - 1, grid.node[a, b, 0], grid.node[a, b, 1])
             one = (qx - px) ** 2 + (qy - py) ** 2 + (qz - pz) ** 2 <= most
