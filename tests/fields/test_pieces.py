@@ -18,10 +18,10 @@ def with_one_vertex_at(far, vertex=220):
     return Surface(points, PLANE.triangles)
 
 
-@pytest.mark.parametrize("far", [1e7, 1e9])
+@pytest.mark.parametrize("far", [3e6, 1e7])
 def test_a_part_with_one_vertex_far_away_is_refused_with_its_place(far):
     net = gd.drape(with_one_vertex_at(far), (33.0, 44.0, 0.0), 10.0, 5.0, (20.0, 20.0))
-    with pytest.raises(DrapeError, match="pieces.*larger pitch.*facet"):
+    with pytest.raises(DrapeError, match=r"pieces.*larger pitch.*facet"):
         gd.evaluate(net)
 
 
