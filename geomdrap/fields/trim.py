@@ -9,6 +9,7 @@ import numpy as np
 
 from geomdrap.fields.cuttable import make_cuttable
 from geomdrap.fields.gradient import bend_cells, complete_ends, shear_gradients
+from geomdrap.fields.pieces import require_few_pieces
 from geomdrap.fields.refine import Refined, refine
 from geomdrap.fields.spread import by_net
 from geomdrap.fields.start import starts
@@ -49,6 +50,7 @@ def trim(net: Net, progress: Callable[[float], None] = lambda _: None) -> Trimme
     ``progress`` is called with the share done, 0 to 1.
     """
     part = net.surface
+    require_few_pieces(part, FINE * net.pitch)
     mesh = refine(part.points, part.triangles, part.neighbours, part.neighbour_edge, FINE * net.pitch)
     corners = mesh.points[mesh.triangles]
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)

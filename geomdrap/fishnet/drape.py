@@ -65,6 +65,8 @@ def drape(
     pitch, notes = (check_pitch(part, pitch), ()) if pitch is not None else choose_pitch(part)
     _check_distance(surface, origin, distance, pitch, project)
     mesh = mesh_of(part.lidded, SPREAD * pitch)
+    point, moved = seeds.out_of_corner(part, origin, point, mesh, pitch)
+    notes = (*notes, *moved)
     heading = math.fmod(angle, 360.0)
     start = seeds.plant(part, point, heading, mesh, reference, fabric.weft_angle)
     extent = first_extent(part, start, pitch, reach)
