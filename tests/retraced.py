@@ -1,4 +1,8 @@
-"""Sides of a net, found again by shooting from node to node: independent of how the cells were closed."""
+"""Sides of a net, found again by shooting from node to node: independent of how the cells were closed.
+
+A side that no straight line finds must go through a vertex of negative deficit: straight to it, and on from it with
+half a turn of faces or more on either hand.
+"""
 
 from __future__ import annotations
 
@@ -7,8 +11,10 @@ import importlib
 import numpy as np
 from numba import njit
 
+from geomdrap.fishnet.pivot import vertex_between
 from geomdrap.geodesic.mesh import mesh_of
 from geomdrap.geodesic.unfold import shoot
+from geomdrap.geodesic.vertex import go_straight_through, total_angle
 
 ENOUGH = 1e-7  # of the side: found
 
@@ -35,7 +41,17 @@ def least_miss(row, link, frames, face, point, target, length, width, steps):
         miss = miss_at(row, link, frames, face, x, y, first + step * k, length, target)
         if miss < best:
             best, at = miss, first + step * k
-    low, high = at - step, at + step
+    found, at = closer(row, link, frames, face, x, y, length, target, at - step, at + step)
+    best = min(best, found)
+    if best > ENOUGH * length:
+        line = np.array([x, y, 0.0, 0.0, length, 0.0, 0.0, 0.0])
+        best = min(best, miss_through_vertex(row, link, frames, face, line, at, target))
+    return best
+
+
+@njit
+def closer(row, link, frames, face, x, y, length, target, low, high):
+    """Least miss between two headings, and where it is."""
     for _ in range(80):  # golden section: needs no derivative, which vertices would spoil
         a, b = low + 0.381966 * (high - low), low + 0.618034 * (high - low)
         if miss_at(row, link, frames, face, x, y, a, length, target) < miss_at(
@@ -44,7 +60,25 @@ def least_miss(row, link, frames, face, point, target, length, width, steps):
             high = b
         else:
             low = a
-    return min(best, miss_at(row, link, frames, face, x, y, 0.5 * (low + high), length, target))
+    at = 0.5 * (low + high)
+    return miss_at(row, link, frames, face, x, y, at, length, target), at
+
+
+@njit
+def miss_through_vertex(row, link, frames, face, line, at, target):
+    """Least miss of lines that pivot at the vertex that headings beside ``at`` pass on either hand."""
+    best = np.inf
+    for beside in (1e-9, 1e-7, 1e-5, 1e-3):
+        right, left = (np.cos(at - beside), np.sin(at - beside)), (np.cos(at + beside), np.sin(at + beside))
+        f, corner, way, _, dx, dy = vertex_between(row, link, face, line, right, left)
+        if f < 0 or total_angle(row, link, f, corner) <= 2 * np.pi:
+            continue
+        half = 0.5 * total_angle(row, link, f, corner) - np.pi
+        f, k, dx, dy = go_straight_through(row, link, f, corner, dx, dy)
+        ahead, (x, y) = np.arctan2(dy, dx), row[f, 2 * k : 2 * k + 2]
+        wide = (ahead - half - 1e-6, ahead + half + 1e-6)
+        best = min(best, closer(row, link, frames, f, x, y, line[4] - way, target, wide[0], wide[1])[0])
+    return best
 
 
 @njit

@@ -74,6 +74,8 @@ def drape(
     pitch, notes = (check_pitch(part, pitch), ()) if pitch is not None else choose_pitch(part)
     _check_distance(tool, origin, distance, pitch, project)
     mesh = mesh_of(part.lidded, SPREAD * pitch)
+    point, moved = seeds.out_of_corner(part, origin, point, mesh, pitch)
+    notes = (*notes, *moved)
     start = _plant(part, point, math.fmod(angle, 360.0), mesh, reference, fabric, shift_with(acting, Shift()))
     extent = first_extent(part, start, pitch, reach)
     while True:

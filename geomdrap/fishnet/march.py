@@ -6,14 +6,16 @@ import math
 
 import numpy as np
 
-from geomdrap.fishnet.cell import CLOSED, FOLDED, OFF_PART, close_cell
+from geomdrap.fishnet.cell import CLOSED, FOLDED, NOT_CLOSED, OFF_PART, close_cell
 from geomdrap.fishnet.grid import PIECES, STATUS, TRIED, Grid
+from geomdrap.fishnet.pivot import close_round_vertices
 from geomdrap.fishnet.place import (
     PRESENT,
     add_piece,
     depart_as,
     departure,
     place,
+    settle,
     side_between,
 )
 from geomdrap.geodesic.compiled import inlined, kernel
@@ -26,6 +28,9 @@ IS_OFF_PART = 2
 IS_FOLDED = 4
 IS_BEHIND_FOLD = 5
 IS_NOT_CLOSED = 7
+
+NOTHING, ADDED, DOUBTFUL = 0, 1, 2  # what trying a cell gave
+SENSES = ((1, 1), (-1, 1), (-1, -1), (1, -1))
 
 SAME_PLACE = 2e-3  # of the side: two fronts that meet this closely are one net; else there is a seam
 
@@ -50,15 +55,14 @@ def lay_yarn(
     dx: float,
     dy: float,
 ) -> bool:
-    """Continue a yarn straight on from a point by one side and put node (i + di, j + dj) there."""
+    """Continue a yarn straight on from a point by one side and put node (i + di, j + dj) there, to be settled."""
     k, m = i + di, j + dj
     side = side_between(grid, i, j, di, dj)
     status, end, ex, ey, ax, ay, _, _, _ = follow(mesh.row, mesh.link, face, x, y, dx, dy, side)
     if status != ENDED:
         grid.marks[k, m, STATUS] = IS_OFF_PART
         return False
-    if not place(mesh, grid, k, m, end, ex, ey, side):
-        return False
+    place(mesh, grid, k, m, end, ex, ey)
     add_piece(grid, i, j, di, dj, dx, dy, ax, ay)
     return True
 
@@ -100,6 +104,16 @@ def lay_generators(
                 going[a] = carry_on(mesh, grid, i, j, di, dj)
                 if turn != 0.0:
                     depart_as(grid, i, j, -di, -dj, before[0], before[1])
+        settle_axes(mesh, grid, i0, j0, n + 1, going)
+
+
+@kernel
+def settle_axes(mesh: Mesh, grid: Grid, i0: int, j0: int, n: int, going: np.ndarray) -> None:
+    """Settle the n-th nodes of the half-axes; one whose node is taken back goes no further."""
+    ends = np.array([[i0 + n, j0], [i0, j0 + n], [i0 - n, j0], [i0, j0 - n]])
+    settle(mesh, grid, ends[going], going.sum())
+    for a in range(4):
+        going[a] = going[a] and grid.face[ends[a, 0], ends[a, 1]] > 0
 
 
 @inlined
@@ -144,13 +158,16 @@ def is_open(grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
 
 
 @inlined
-def try_cell(mesh: Mesh, grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
-    """Close the open cell between A = (i, j) and C = (i + su, j + sv); True if a node or a side was added."""
+def try_cell(mesh: Mesh, grid: Grid, i: int, j: int, su: int, sv: int) -> int:
+    """Close the open cell between A = (i, j) and C = (i + su, j + sv): NOTHING, ADDED a node or side, or DOUBTFUL.
+
+    A doubtful node may lie on another stretch of the net: the nodes of its rank must be settled.
+    """
     k, m = i + su, j + sv
     known = grid.marks[k, m, STATUS] == PRESENT
     bit = 1 << ((su > 0) + 2 * (sv > 0))
     if grid.marks[k, m, TRIED] & bit:
-        return False
+        return NOTHING
     grid.marks[k, m, TRIED] |= bit
 
     # the sides of a small cell are parallel: B to C as A to D, D to C as A to B
@@ -161,13 +178,13 @@ def try_cell(mesh: Mesh, grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
     if s * sense <= 0.0:
         if not known:
             grid.marks[k, m, STATUS] = IS_FOLDED
-        return False
+        return NOTHING
     px, py = departure(grid, k, j, -su, 0)
     qx, qy = departure(grid, i, m, 0, -sv)
     xb, yb = grid.node[k, j, 0], grid.node[k, j, 1]
     xd, yd = grid.node[i, m, 0], grid.node[i, m, 1]
     lb, ld = side_between(grid, k, j, 0, sv), side_between(grid, i, m, su, 0)
-    state, face, x, y, obx, oby, abx, aby, odx, ody, adx, ady = close_cell(
+    cell = (
         mesh.row,
         mesh.link,
         mesh.frames,
@@ -185,9 +202,12 @@ def try_cell(mesh: Mesh, grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
         ld,
         sense,
     )
+    state, face, x, y, obx, oby, abx, aby, odx, ody, adx, ady = close_cell(*cell)
+    if state == NOT_CLOSED:
+        state, face, x, y, obx, oby, abx, aby, odx, ody, adx, ady = close_round_vertices(*cell)
     if known:  # two fronts meet
         if state != CLOSED or not same_place(mesh, grid, k, m, face, x, y, lb):
-            return False
+            return NOTHING
         abx, aby = in_frame(mesh.frames, face, grid.face[k, m] - 1, abx, aby)
         adx, ady = in_frame(mesh.frames, face, grid.face[k, m] - 1, adx, ady)
     # at B and D, too, the corner of the cell must open to its own side
@@ -197,12 +217,11 @@ def try_cell(mesh: Mesh, grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
         grid.marks[k, m, STATUS] = (
             IS_FOLDED if state == FOLDED else IS_OFF_PART if state == OFF_PART else IS_NOT_CLOSED
         )
-        return False
-    if not known and not place(mesh, grid, k, m, face, x, y, max(lb, ld)):
-        return False
+        return NOTHING
+    doubtful = not known and place(mesh, grid, k, m, face, x, y)
     add_piece(grid, k, j, 0, sv, obx, oby, abx, aby)
     add_piece(grid, i, m, su, 0, odx, ody, adx, ady)
-    return True
+    return DOUBTFUL if doubtful else ADDED
 
 
 @inlined
@@ -213,51 +232,52 @@ def shadowed(grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
 
 
 @kernel
-def fill_quadrant(mesh: Mesh, grid: Grid, i0: int, j0: int, columns: int, rows: int, su: int, sv: int) -> None:
-    """Close the cells of one quadrant outward from the seed, diagonal by diagonal.
+def fill_diagonal(
+    mesh: Mesh,
+    grid: Grid,
+    box: np.ndarray,
+    i0: int,
+    j0: int,
+    diagonal: int,
+    su: int,
+    sv: int,
+    new: np.ndarray,
+    count: int,
+) -> tuple[int, bool]:
+    """Close the cells of one quadrant on a diagonal; the nodes in ``new`` (n, 2) and whether any is doubtful.
 
-    In that order a cell is tried before anything that lies behind it. A fold throws a shadow: what is behind it would
-    have to be cut and stitched, so it is left bare and marked.
+    ``box`` (4,) is how far the half-axes go. A fold throws a shadow: what is behind it would have to be cut and
+    stitched, so it is left bare and marked.
     """
-    for diagonal in range(columns + rows - 1):
-        for a in range(max(0, diagonal - rows + 1), min(diagonal + 1, columns)):
-            i, j = i0 + a * su, j0 + (diagonal - a) * sv
-            if is_open(grid, i, j, su, sv):
-                try_cell(mesh, grid, i, j, su, sv)
-            elif grid.marks[i + su, j + sv, STATUS] == UNREACHED and shadowed(grid, i, j, su, sv):
-                grid.marks[i + su, j + sv, STATUS] = IS_BEHIND_FOLD
+    columns, rows = abs(box[1 if su > 0 else 0] - i0), abs(box[3 if sv > 0 else 2] - j0)
+    doubtful = False
+    for a in range(max(0, diagonal - rows + 1), min(diagonal + 1, columns)):
+        i, j = i0 + a * su, j0 + (diagonal - a) * sv
+        if is_open(grid, i, j, su, sv):
+            known = grid.marks[i + su, j + sv, STATUS] == PRESENT
+            result = try_cell(mesh, grid, i, j, su, sv)
+            if result != NOTHING and not known:
+                doubtful = doubtful or result == DOUBTFUL
+                new[count, 0], new[count, 1] = i + su, j + sv
+                count += 1
+        elif grid.marks[i + su, j + sv, STATUS] == UNREACHED and shadowed(grid, i, j, su, sv):
+            grid.marks[i + su, j + sv, STATUS] = IS_BEHIND_FOLD
+    return count, doubtful
 
 
 @kernel
 def fill_quadrants(mesh: Mesh, grid: Grid, i0: int, j0: int) -> None:
-    """Close the cells between the half-axes."""
+    """Close the cells between the half-axes outward from the seed, a diagonal in all quadrants at a time.
+
+    In that order a cell is tried before anything that lies behind it, and no quadrant is there before the others.
+    """
     box = grid.box.copy()
-    for su, sv in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
-        columns, rows = abs(box[1 if su > 0 else 0] - i0), abs(box[3 if sv > 0 else 2] - j0)
-        fill_quadrant(mesh, grid, i0, j0, columns, rows, su, sv)
-
-
-@kernel
-def sweep(mesh: Mesh, grid: Grid, i0: int, j0: int, i1: int, j1: int, su: int, sv: int) -> int:
-    """Try every open cell from node (i0, j0) to (i1, j1) in one sense of march; the number that gave something."""
-    gained = 0
-    for j in range(j0, j1, sv):
-        for i in range(i0, i1, su):
-            if is_open(grid, i, j, su, sv):
-                gained += try_cell(mesh, grid, i, j, su, sv)
-    return gained
-
-
-@kernel
-def close_everywhere(mesh: Mesh, grid: Grid) -> None:
-    """Close every cell that has three nodes, from whichever side, until nothing more can be closed."""
-    gained = 1
-    while gained:
-        gained = 0
-        for su, sv in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
-            i0, i1, j0, j1 = grid.box[0], grid.box[1], grid.box[2], grid.box[3]
-            if su < 0:
-                i0, i1 = i1, i0
-            if sv < 0:
-                j0, j1 = j1, j0
-            gained += sweep(mesh, grid, i0, j0, i1, j1, su, sv)
+    new = np.empty((2 * (box[1] - box[0] + box[3] - box[2]) + 4, 2), np.int64)
+    for diagonal in range(max(box[1] - i0, i0 - box[0]) + max(box[3] - j0, j0 - box[2])):
+        count = 0
+        doubtful = False
+        for su, sv in SENSES:
+            count, doubt = fill_diagonal(mesh, grid, box, i0, j0, diagonal, su, sv, new, count)
+            doubtful = doubtful or doubt
+        if doubtful:
+            settle(mesh, grid, new, count)

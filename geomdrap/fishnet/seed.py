@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.errors import DrapeError
-from geomdrap.geodesic.vertex import ALONG_EDGE, total_angle, turn_left
+from geomdrap.geodesic.trace import trace
+from geomdrap.geodesic.vertex import ALONG_EDGE, fan_start, rim_angle, total_angle, turn_left
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -132,6 +133,32 @@ def plant(
         places[:, 2:] = directions @ frame.T
         places[:, 2:] /= np.linalg.norm(places[:, 2:], axis=1, keepdims=True)
     return Seed(face, point, normal, directions[0], directions[1], starts, places)
+
+
+def out_of_corner(
+    surface: Surface, origin: Origin, point: np.ndarray, mesh: Mesh, pitch: float
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """The centroid, moved inward where it lies on a corner of the rim too narrow for two yarns at right angles.
+
+    It goes straight along the middle of the corner by a pitch, or half way through the part where that is less.
+    Returns the point (3,) and a note if it was moved. A seed of the user's own is left where it is.
+    """
+    if not (isinstance(origin, str) and origin == "centroid"):
+        return point, ()
+    face, point, _ = locate(surface, point)
+    corner = _corner_at(surface, face, point)
+    if corner < 0 or total_angle(mesh.row, mesh.link, face, corner) >= 0.0:
+        return point, ()
+    first, at, _ = fan_start(mesh.row, mesh.link, face, corner)
+    opening = rim_angle(mesh.row, mesh.link, first, at)
+    if opening >= 0.5 * math.pi:
+        return point, ()
+    face, at, dx, dy = turn_left(mesh.row, mesh.link, first, at, 0.5 * opening)
+    middle = dx * surface.e1[face] + dy * surface.e2[face]
+    way = trace(surface, point, middle, pitch, face=face).length
+    moved = trace(surface, point, middle, way if way == pitch else 0.5 * way, face=face)
+    note = f"the centroid lies on a narrow corner of the rim: the origin was moved {moved.length:.4g} mm inward"
+    return moved.point, (note,)
 
 
 def _corner_at(surface: Surface, face: int, point: np.ndarray) -> int:

@@ -15,8 +15,17 @@ import math
 import numpy as np
 
 from geomdrap.fishnet.grid import PIECES, STATUS, STRAIN, Grid
-from geomdrap.fishnet.march import IS_BEHIND_FOLD, UNREACHED, is_open, shadowed, try_cell
-from geomdrap.fishnet.place import WARP_PIECE, WEFT_PIECE, departure
+from geomdrap.fishnet.march import (
+    DOUBTFUL,
+    IS_BEHIND_FOLD,
+    NOTHING,
+    SENSES,
+    UNREACHED,
+    is_open,
+    shadowed,
+    try_cell,
+)
+from geomdrap.fishnet.place import WARP_PIECE, WEFT_PIECE, departure, settle
 from geomdrap.fishnet.shear import corner_cosine
 from geomdrap.geodesic.compiled import inlined, kernel
 from geomdrap.geodesic.mesh import Mesh
@@ -84,18 +93,32 @@ def foreseen_sine(grid: Grid, sines: np.ndarray, i: int, j: int, su: int, sv: in
 def fill_quadrant_sliding(
     mesh: Mesh, grid: Grid, sines: np.ndarray, i0: int, j0: int, su: int, sv: int, slip: float
 ) -> None:
-    """As ``fill_quadrant``, each weft piece as long as its shear makes it; of a diagonal the lowest row first."""
+    """Close the cells of one quadrant outward from the seed, each weft piece as long as its shear makes it.
+
+    Diagonal by diagonal, and of a diagonal the lowest row first.
+    """
     columns, rows = abs(grid.box[1 if su > 0 else 0] - i0), abs(grid.box[3 if sv > 0 else 2] - j0)
+    new = np.empty((columns + rows + 1, 2), np.int64)
     for diagonal in range(columns + rows - 1):
+        count = 0
+        doubtful = False
         for a in range(min(diagonal, columns - 1), max(0, diagonal - rows + 1) - 1, -1):
             i, j = i0 + a * su, j0 + (diagonal - a) * sv
             low_i, low_j = i if su > 0 else i - 1, j if sv > 0 else j - 1
             if is_open(grid, i, j, su, sv):
                 grid.node[i + su, low_j, STRAIN] = strain_of(foreseen_sine(grid, sines, i, j, su, sv), slip)
-                if try_cell(mesh, grid, i, j, su, sv):
+                known = grid.face[i + su, j + sv] > 0
+                result = try_cell(mesh, grid, i, j, su, sv)
+                if result != NOTHING:
                     sines[low_i, low_j] = cell_sine(grid, low_i, low_j)
+                    if not known:
+                        doubtful = doubtful or result == DOUBTFUL
+                        new[count, 0], new[count, 1] = i + su, j + sv
+                        count += 1
             elif grid.marks[i + su, j + sv, STATUS] == UNREACHED and shadowed(grid, i, j, su, sv):
                 grid.marks[i + su, j + sv, STATUS] = IS_BEHIND_FOLD
+        if doubtful:
+            settle(mesh, grid, new, count)
 
 
 @kernel
@@ -107,7 +130,7 @@ def fill_quadrants_sliding(mesh: Mesh, grid: Grid, i0: int, j0: int, slip: float
     """
     nu, nv = grid.face.shape
     sines = np.full((nu - 1, nv - 1), math.nan)
-    for su, sv in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
+    for su, sv in SENSES:
         fill_quadrant_sliding(mesh, grid, sines, i0, j0, su, sv, slip)
     for j in range(nv - 1):
         for step in (1, -1):

@@ -76,6 +76,20 @@ def fan_start(row: np.ndarray, link: np.ndarray, face: int, at: int) -> tuple[in
 
 
 @kernel
+def rim_angle(row: np.ndarray, link: np.ndarray, face: int, at: int) -> float:
+    """Sum of the face angles (radians) around a vertex of the rim, from the first face of its fan (``fan_start``)."""
+    total = 0.0
+    here, k = face, at
+    for _ in range(FAN_LIMIT):
+        total += wedge(row, here, k)[2]
+        onward = link[here, before(k)]
+        if onward < 0:
+            break
+        here, k = onward >> 2, onward & 3
+    return total
+
+
+@kernel
 def go_straight_through(row: np.ndarray, link: np.ndarray, face: int, at: int, dx: float, dy: float) -> Any:
     """Continue a line that runs into corner ``at`` so that the angles on its two sides are equal.
 

@@ -166,6 +166,31 @@ def test_a_seed_on_the_rim_of_a_hole_drapes_the_whole_part(angle):
         assert np.nanmax(abs(net.cell_shear)) < 1e-3
 
 
+def spiked_frame(tip=-30.0):
+    """A square frame, open at the top, with a spike from below whose tip is nearest to the centroid."""
+    outer = [(-100, -100), (100, -100), (100, 100), (-100, 100)]
+    inner = [(-60, -60), (60, -60), (60, 60), (-60, 60)]
+    points = np.array([(x, y, 0.0) for x, y in [*outer, *inner, (-15, -60), (15, -60), (0.0, tip)]])
+    triangles = [(0, 1, 5), (0, 5, 9), (0, 9, 8), (0, 8, 4), (1, 2, 6), (1, 6, 5), (3, 0, 4), (3, 4, 7), (8, 9, 10)]
+    return Surface(points, np.array(triangles))
+
+
+@pytest.mark.parametrize("angle", [0.0, 30.0, 45.0])
+def test_a_centroid_on_a_narrow_corner_of_the_rim_is_moved_inward_and_it_says_so(angle):
+    part = spiked_frame()
+    net = gd.drape(part, "centroid", angle, 4.0)
+    np.testing.assert_allclose(net.origin, [0.0, -34.0, 0.0], atol=1e-9)
+    assert any("moved 4 mm inward" in note for note in net.notes)
+    assert net.cell_valid.sum() * 16.0 > 0.7 * part.area
+    small = gd.drape(spiked_frame(-57.0), "centroid", angle, 4.0)  # a corner wider than 90 degrees is a good seed
+    assert not small.notes
+
+
+def test_a_seed_of_the_users_own_on_a_narrow_corner_is_not_moved():
+    with pytest.raises(DrapeError, match="corner"):
+        gd.drape(spiked_frame(), (0.0, -30.0, 0.0), 45.0, 4.0)
+
+
 def test_a_seed_on_the_corner_of_a_box_is_draped():
     net = gd.drape(cube(60.0, 6), (30.0, 30.0, 30.0), 0.0, 4.0, (25.0, 25.0))
     assert net.cell_valid.any()
