@@ -45,7 +45,13 @@ def least_miss(row, link, frames, face, point, target, length, width, steps):
     best = min(best, found)
     if best > ENOUGH * length:
         line = np.array([x, y, 0.0, 0.0, length, 0.0, 0.0, 0.0])
-        best = min(best, miss_through_vertex(row, link, frames, face, line, at, target))
+        for beside in (1e-9, 1e-7, 1e-5, 1e-3):
+            best = min(best, miss_through_vertex(row, link, frames, face, line, at - beside, at + beside, target))
+        for k in range(-steps, steps):  # the wedge may be so wide that lines beside it end nowhere near
+            if best <= ENOUGH * length:
+                break
+            low = first + step * k
+            best = min(best, miss_through_vertex(row, link, frames, face, line, low, low + step, target))
     return best
 
 
@@ -65,19 +71,21 @@ def closer(row, link, frames, face, x, y, length, target, low, high):
 
 
 @njit
-def miss_through_vertex(row, link, frames, face, line, at, target):
-    """Least miss of lines that pivot at the vertex that headings beside ``at`` pass on either hand."""
+def miss_through_vertex(row, link, frames, face, line, low, high, target):
+    """Least miss of lines that pivot at the first vertex that two headings pass on either hand."""
+    right, left = (np.cos(low), np.sin(low)), (np.cos(high), np.sin(high))
+    f, corner, way, _, dx, dy = vertex_between(row, link, face, line, right, left)
+    if f < 0 or total_angle(row, link, f, corner) <= 2 * np.pi:
+        return np.inf
+    half = 0.5 * total_angle(row, link, f, corner) - np.pi
+    f, k, dx, dy = go_straight_through(row, link, f, corner, dx, dy)
+    ahead, x, y = np.arctan2(dy, dx), row[f, 2 * k], row[f, 2 * k + 1]
     best = np.inf
-    for beside in (1e-9, 1e-7, 1e-5, 1e-3):
-        right, left = (np.cos(at - beside), np.sin(at - beside)), (np.cos(at + beside), np.sin(at + beside))
-        f, corner, way, _, dx, dy = vertex_between(row, link, face, line, right, left)
-        if f < 0 or total_angle(row, link, f, corner) <= 2 * np.pi:
-            continue
-        half = 0.5 * total_angle(row, link, f, corner) - np.pi
-        f, k, dx, dy = go_straight_through(row, link, f, corner, dx, dy)
-        ahead, (x, y) = np.arctan2(dy, dx), row[f, 2 * k : 2 * k + 2]
-        wide = (ahead - half - 1e-6, ahead + half + 1e-6)
-        best = min(best, closer(row, link, frames, f, x, y, line[4] - way, target, wide[0], wide[1])[0])
+    pieces = 1 + int(half / 0.02)
+    for n in range(pieces):
+        a = ahead - half - 1e-6 + 2.0 * (half + 1e-6) * n / pieces
+        b = a + 2.0 * (half + 1e-6) / pieces
+        best = min(best, closer(row, link, frames, f, x, y, line[4] - way, target, a, b)[0])
     return best
 
 

@@ -120,6 +120,8 @@ def pivot(
     A TIP has a positive deficit: no line pivots there. ``left`` (2, 3) keeps the departures from the nodes and the
     half widths (radians) of the wedges behind vertices.
     """
+    if left[side, 2] > 0.0:  # once a side: with a second vertex the angles at the first would have to be right, too
+        return NO_VERTEX
     headings = np.empty((2, 2))
     for n, at in enumerate((RIGHT, LEFT)):
         turn = lines[side, at] - lines[side, TURNED]
@@ -134,9 +136,8 @@ def pivot(
     if total <= 2.0 * math.pi:
         return TIP
     beyond, at, ox, oy = go_straight_through(row, link, face, corner, dx, dy)
-    if left[side, 2] == 0.0:
-        c, s = math.cos(turn), math.sin(turn)
-        left[side, 0], left[side, 1] = c * right[0] - s * right[1], s * right[0] + c * right[1]
+    c, s = math.cos(turn), math.sin(turn)
+    left[side, 0], left[side, 1] = c * right[0] - s * right[1], s * right[0] + c * right[1]
     left[side, 2] = 0.5 * total - math.pi
     faces[side] = beyond
     lines[side, X], lines[side, Y] = row[beyond, 2 * at], row[beyond, 2 * at + 1]
