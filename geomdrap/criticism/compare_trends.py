@@ -91,6 +91,11 @@ def _edges(place: np.ndarray) -> np.ndarray:
     return edges if len(edges) > 1 else np.array([edges[0], edges[0] + 1.0])
 
 
+def _rounded(values: np.ndarray) -> np.ndarray:
+    """Values (n,) in steps of 1e-9 of their range, so that those equal but for rounding rank equally."""
+    return np.round((values - values.min()) / max(1e-9 * float(np.ptp(values)), 1e-300))
+
+
 def rank_correlation(
     x: np.ndarray, y: np.ndarray, where: np.ndarray
 ) -> tuple[float | None, float | None, float | None]:
@@ -101,7 +106,7 @@ def rank_correlation(
     """
     from scipy.stats import rankdata, t
 
-    a, b = (rankdata(values) - 0.5 * (len(values) + 1) for values in (x, y))
+    a, b = (rankdata(_rounded(values)) - 0.5 * (len(values) + 1) for values in (x, y))
     if not (a.any() and b.any()):
         return None, None, None
     rho = float(a @ b / np.sqrt((a @ a) * (b @ b)))
