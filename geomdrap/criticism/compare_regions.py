@@ -19,8 +19,10 @@ CLEAR = 5.0
 """Standard deviations of that average from which a region is worth a name."""
 PART_OF = 0.5
 """Of its peak: how far the averaged residual may fall within a region."""
-WIDTH = 3.0
-"""Spacings of the points: greatest distance of a region's points from its peak, so that a region has a place."""
+WIDTH = 3.05
+"""Spacings of the points: greatest distance of a region's points from its peak, so that a region has a place.
+
+No whole number, so that rounding does not decide on marks of a grid."""
 TIGHT = 0.2
 """Of the part's diagonal: radii of curvature below this are worth a word."""
 MOST = 5

@@ -59,7 +59,7 @@ def trends_of(comparison: Comparison) -> tuple[Trend, ...]:
             kept = comparison.trusted & np.isfinite(size) & np.isfinite(place)
             if kept.sum() >= 3 * LEAST and np.ptp(place[kept]) > 0.0:
                 where = np.column_stack([comparison.matched.u, comparison.matched.v])[kept]
-                out.append(_trend(kind, against, place[kept], size[kept], signed[kept], where))
+                out.append(_trend(kind, against, _rounded(place[kept]), size[kept], signed[kept], where))
     return tuple(out)
 
 
@@ -92,8 +92,9 @@ def _edges(place: np.ndarray) -> np.ndarray:
 
 
 def _rounded(values: np.ndarray) -> np.ndarray:
-    """Values (n,) in steps of 1e-9 of their range, so that those equal but for rounding rank equally."""
-    return np.round((values - values.min()) / max(1e-9 * float(np.ptp(values)), 1e-300))
+    """Values (n,) to 1e-9 of their largest, so that those equal but for rounding rank equally."""
+    step = max(1e-9 * float(np.abs(values).max()), 1e-300)
+    return np.round(values / step) * step
 
 
 def rank_correlation(
