@@ -119,3 +119,4 @@ def test_the_pitch_divides_the_spacing():
     assert pitch_for_marks(16.0, 8.0) == 8.0
     assert pitch_for_marks(16.0, 20.0) == 16.0
     assert pitch_for_marks(None, 5.0) == 5.0
+    assert pitch_for_marks(0.6, 5.0) == pytest.approx(4.8)
