@@ -140,8 +140,10 @@ def _region(comparison: Comparison, rows: np.ndarray, peak: int, score: float) -
 
 def region_words(region: Region) -> str:
     """A region in one line: place, residual, shear."""
-    at = ", ".join(f"{x:.0f}" for x in region.position)
-    along = f"{region.along_warp:+.2f} warp, {region.along_weft:+.2f} weft, {region.normal:+.2f} normal"
+    at = ", ".join(f"{round(x) + 0:d}" for x in region.position)
+    parts = (region.along_warp, region.along_weft, region.normal)
+    numbers = [f"{round(part, 2) + 0.0:+.2f}" for part in parts]  # + 0.0 turns −0.00 into 0.00
+    along = f"{numbers[0]} warp, {numbers[1]} weft, {numbers[2]} normal"
     shear = "" if region.shear is None else f"; shear {region.shear:+.1f}°"
     return f"{region.name}: {region.size:.2f} mm ({along}){shear}; {region.n} points about ({at})"
 

@@ -114,8 +114,8 @@ def rank_correlation(
     both = pairs_by_distance(where, (a, b))
     shared = float(np.sum(both.count * both.mean[0] * both.mean[1]))
     n = len(x)
-    independent = 1.0 + n**2 * (a.var() * b.var()) / max(n * a.var() * b.var() + shared, 1e-300)
-    independent = float(np.clip(independent, 3.0, n))
+    chance = n * a.var() * b.var()  # what independent numbers would share; less than that is chance too
+    independent = float(np.clip(1.0 + n * chance / max(chance + shared, chance), 3.0, n))
     freedom = independent - 2.0
     statistic = abs(rho) * np.sqrt(freedom / max(1.0 - rho**2, 1e-12))
     return rho, float(2.0 * t.sf(statistic, freedom)), independent

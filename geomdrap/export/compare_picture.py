@@ -21,6 +21,8 @@ from geomdrap.export.whole import write_whole
 if TYPE_CHECKING:
     from geomdrap.criticism import Comparison
 
+NOISE_ONLY = 1.15
+"""Times what noise alone would give: below, residual vectors are said to be noise."""
 HEADER = 1.1
 PANELS = 4.7
 BARS = 0.8
@@ -107,7 +109,10 @@ def _panels(figure: Any, comparison: Comparison, bottom: float, scale: CompareSc
     labelled = comparison.measurement.labelled
     _, name, _ = signed_values(comparison)
     views = {"camera": camera, "scale": scale}
-    title = "From where the model has a mark to where it lies" if labelled else "Off the part, along its normal"
+    title = "From the predicted to the measured place" if labelled else "Off the part, along its normal"
+    score = comparison.scores.position
+    if score is not None and score.noise is not None and score.rms < NOISE_ONLY * score.noise:
+        title += ": noise only"
     draw_vectors(figure, boxes[0], comparison, skin, title=title, **views)
     along = f"along warp and weft, vectors × {scale.factor:g}"
     draw_flat(figure, boxes[1], comparison, scale, f"On the flat fabric: {along if labelled else name.lower()}")
