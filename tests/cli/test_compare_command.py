@@ -117,6 +117,7 @@ def test_the_summary_says_the_same_in_words(run, files):
     assert "319 of 319 points compared" in result.stdout
     assert "shear grows with predicted shear" in result.stdout
     assert "(given)" in result.stdout
+    assert "neighbours are alike, which noise is not: shear (Moran's I" in result.stdout
 
 
 BAD = {
