@@ -8,7 +8,7 @@ import numpy as np
 
 from geomdrap.export import palette
 from geomdrap.export.compare_scale import CompareScale, signed_values, size_colours, thinned
-from geomdrap.export.compare_view import MOST_DOTS, MOST_VECTORS, SHAFT, _dots, dot_size, fabric_places
+from geomdrap.export.compare_view import MOST_DOTS, MOST_VECTORS, SHAFT, dot_size, fabric_places, scatter_dots
 from geomdrap.export.flat_map import draw_rosette
 from geomdrap.export.layout import Box
 from geomdrap.export.picture import AROUND_MAP, caption, place
@@ -30,7 +30,7 @@ def draw_flat(figure: Any, box: Box, comparison: Comparison, scale: CompareScale
     else:
         values, _, _ = signed_values(comparison)
         drawn = thinned(where, np.flatnonzero(comparison.trusted & np.isfinite(values)), MOST_DOTS)
-        _dots(axes, where[drawn], values[drawn], scale, dot_size(len(drawn)))
+        scatter_dots(axes, where[drawn], values[drawn], scale, dot_size(len(drawn)))
     _marks(axes, where, comparison)
     caption(figure, box, title)
 

@@ -99,7 +99,7 @@ def draw_dots(
     place_of = view.viewport.pixels(comparison.matched.point)
     drawn = np.flatnonzero(seen & np.isfinite(values) & comparison.trusted)
     drawn = thinned(fabric_places(comparison), drawn, MOST_DOTS)
-    dots = _dots(axes, place_of[drawn, :2], values[drawn], scale, dot_size(len(drawn)))
+    dots = scatter_dots(axes, place_of[drawn, :2], values[drawn], scale, dot_size(len(drawn)))
     _mark_outliers(axes, place_of, seen, comparison, "shear" if comparison.shear is not None else "position")
     caption(figure, box, title)
     draw_scale_bar(figure, box, view.viewport.scale, words.removeprefix("; "))
@@ -117,7 +117,8 @@ def dot_size(count: int) -> float:
     return float(np.clip(9000.0 / max(count, 1), 6.0, 60.0))
 
 
-def _dots(axes: Any, places: Floats, values: Floats, scale: CompareScale, area: float) -> Any:
+def scatter_dots(axes: Any, places: Floats, values: Floats, scale: CompareScale, area: float) -> Any:
+    """Dots of ``area`` points² at places (n, 2) on the axes, coloured by signed values (n,), large ones on top."""
     order = np.argsort(np.abs(values), kind="stable")
     return axes.scatter(
         *places[order].T,

@@ -8,7 +8,7 @@ from analytic_tools import measured
 
 import geomdrap as gd
 from geomdrap.criticism.compare_places import vertex_curvature
-from geomdrap.criticism.compare_structure import _moran
+from geomdrap.criticism.compare_structure import morans_index
 from geomdrap.criticism.compare_trends import rank_correlation
 from geomdrap.measurement.local import neighbours
 from geomdrap.surface import shapes
@@ -84,7 +84,7 @@ def test_a_relation_of_smooth_fields_is_still_seen():
 def test_morans_index_of_noise_has_mean_0_and_the_spread_said(width):
     places, rng = _grid(), np.random.default_rng(0)
     near = neighbours(places, 8)
-    z = np.array([i / s for i, s in (_moran(rng.normal(size=(len(places), width)), near) for _ in range(400))])
+    z = np.array([i / s for i, s in (morans_index(rng.normal(size=(len(places), width)), near) for _ in range(400))])
     assert np.mean(z) == pytest.approx(0.0, abs=0.15)
     assert np.std(z) == pytest.approx(1.0, abs=0.12)
 
@@ -94,7 +94,7 @@ def test_morans_index_does_not_depend_on_the_axes():
     near = neighbours(places, 8)
     values = _smooth(places, rng)
     turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
-    np.testing.assert_allclose(_moran(values @ turn, near), _moran(values, near), rtol=1e-9)
+    np.testing.assert_allclose(morans_index(values @ turn, near), morans_index(values, near), rtol=1e-9)
 
 
 def test_springback_grows_with_the_shear_and_leaves_the_positions_alone():
