@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def summary(comparison: Comparison, files: Mapping[str, Path]) -> str:
     """Give the summary as text: a labelled line per fact, in mm and degrees."""
-    return "\n".join(f"{label:<12}{text}".rstrip() for label, text in _lines(comparison, files))
+    return "\n".join(f"{label:<13}{text}".rstrip() for label, text in _lines(comparison, files))
 
 
 def _lines(comparison: Comparison, files: Mapping[str, Path]) -> Iterator[tuple[str, str]]:

@@ -27,7 +27,9 @@ AGAINST = {
 
 @dataclass(frozen=True, eq=False)
 class Trend:
-    """Residual sizes of one ``kind`` (position in mm, shear in degrees) against one place (a key of AGAINST).
+    """Residual sizes of one ``kind`` against one place (a key of AGAINST).
+
+    Kinds are position in mm, shear, and warp and weft (turns of the directions) in degrees.
 
     ``edges`` (k + 1,) of the bins, ``n`` (k,) points in them, ``middle`` (k,) their median place, ``rms`` (k,) of the
     residual, ``mean`` (k,) of the signed residual (along the normal for positions). ``rho``: Spearman's rank
@@ -52,6 +54,10 @@ def trends_of(comparison: Comparison) -> tuple[Trend, ...]:
     kinds = [("position", comparison.size, comparison.parts[:, 2])]
     if comparison.shear is not None:
         kinds.append(("shear", np.abs(comparison.shear), comparison.shear))
+    if comparison.warp_turn is not None:
+        kinds.append(("warp", np.abs(comparison.warp_turn), comparison.warp_turn))
+    if comparison.weft_turn is not None:
+        kinds.append(("weft", np.abs(comparison.weft_turn), comparison.weft_turn))
     out = []
     for kind, size, signed in kinds:
         for against in AGAINST:

@@ -115,7 +115,8 @@ def _panels(figure: Any, comparison: Comparison, bottom: float, scale: CompareSc
         title += ": noise only"
     draw_vectors(figure, boxes[0], comparison, skin, title=title, **views)
     along = f"along warp and weft, vectors × {scale.factor:g}"
-    draw_flat(figure, boxes[1], comparison, scale, f"On the flat fabric: {along if labelled else name.lower()}")
+    rest = "the same as on the right"
+    draw_flat(figure, boxes[1], comparison, scale, f"On the flat fabric: {along if labelled else rest}")
     draw_dots(figure, boxes[2], comparison, skin, title=name, **views)
 
 
@@ -127,7 +128,8 @@ def _bars(figure: Any, comparison: Comparison, bottom: float, scale: CompareScal
 def _trends(figure: Any, comparison: Comparison, kind: str, bottom: float) -> None:
     """A row of diagrams of one kind of residual, and what is in them."""
     wide, high = figure.get_size_inches()
-    words = f"What the {kind} residual goes with: red, root mean square in bins; grey band, noise alone"
+    name = {"warp": "warp direction", "weft": "weft direction"}.get(kind, kind)
+    words = f"What the {name} residual goes with: red, root mean square in bins; grey band, noise alone"
     y = (bottom + TRENDS - 0.02) / high
     figure.text((MARGIN + 0.15) / wide, y, words, fontsize=9.5, fontweight="bold", color=palette.INK, va="top")
     trends = [trend for trend in comparison.trends if trend.kind == kind]

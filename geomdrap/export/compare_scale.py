@@ -49,9 +49,9 @@ def signed_values(comparison: Comparison) -> tuple[Floats, str, str]:
     if comparison.shear is not None:
         return comparison.shear, "Shear, measured less predicted", "°"
     if comparison.warp_turn is not None:
-        return comparison.warp_turn, "Warp direction, measured less predicted (counter-clockwise)", "°"
+        return comparison.warp_turn, "Warp direction, measured less predicted", "°"
     if comparison.weft_turn is not None:
-        return comparison.weft_turn, "Weft direction, measured less predicted (counter-clockwise)", "°"
+        return comparison.weft_turn, "Weft direction, measured less predicted", "°"
     return comparison.parts[:, 2], "Distance from the part along its normal", " mm"
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 AROUND = (0.62, 0.52, 0.15, 0.62)
 NOISE = "#9aa5b1"
-UNITS = {"position": "mm", "shear": "°"}
+UNITS = {"position": "mm", "shear": "°", "warp": "°", "weft": "°"}
 CLEAR, POSSIBLE = 0.01, 0.1
 """Probabilities below which a correlation is called one, and may be one."""
 SLIGHT = 0.25
@@ -72,9 +72,9 @@ def _noise_band(axes: Any, trend: Trend, score: Score | None, width: int) -> Non
 
 def _sizes(comparison: Comparison, kind: str) -> np.ndarray:
     """Sizes (n,) of the residuals of one kind."""
-    if kind == "position" or comparison.shear is None:
-        return comparison.size
-    return np.abs(comparison.shear)
+    known = {"shear": comparison.shear, "warp": comparison.warp_turn, "weft": comparison.weft_turn}
+    values = known.get(kind)
+    return comparison.size if values is None else np.abs(values)
 
 
 def _limits(trend: Trend) -> tuple[float, float]:

@@ -60,6 +60,21 @@ def test_the_rim_is_in_the_name_with_its_distance(quiet):
     assert worst.shear > 4.0
 
 
+def test_turned_directions_are_a_region_too(quiet):
+    surface, m, laid = quiet
+    net = gd.drape(surface, laid["origin"], laid["angle"], 8.0)
+    warp, weft = net.directions(m.u, m.v)
+    normal = np.cross(warp, weft)
+    angle = np.radians(np.random.default_rng(1).normal(0.0, 0.5, len(m)) + 6.0 * (m.v > 90.0))[:, None]
+    turned = np.cos(angle) * warp + np.sin(angle) * np.cross(normal / np.linalg.norm(normal, axis=1, keepdims=True), warp)
+    c = gd.compare(surface, replace(m, warp=turned), **laid)
+    worst = worst_regions(c)[0]
+    assert "+weft" in worst.name
+    assert worst.warp_turn == pytest.approx(6.0, abs=1.5)
+    assert worst.weft_turn is None
+    assert {t.kind for t in c.trends} == {"position", "shear", "warp"}
+
+
 def test_the_part_that_was_not_measured_is_found(quiet):
     surface, m, laid = quiet
     c = gd.compare(surface, m.take(m.points[:, 0] < 0.0), **laid)

@@ -112,6 +112,7 @@ def test_bins_hold_all_points_and_their_mean_square_is_the_whole():
     surface, m, laid = measured("steering")
     c = gd.compare(surface, m, **laid)
     for trend in c.trends:
+        assert trend.kind in ("position", "shear")
         size = c.size if trend.kind == "position" else np.abs(c.shear)
         kept = c.trusted & np.isfinite(size)
         assert trend.n.sum() == kept.sum()
