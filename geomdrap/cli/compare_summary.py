@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def summary(comparison: Comparison, files: Mapping[str, Path]) -> str:
     """Give the summary as text: a labelled line per fact, in mm and degrees."""
-    return "\n".join(f"{label:<12}{text}".rstrip() for label, text in _lines(comparison, files))
+    return "\n".join(f"{label:<13}{text}".rstrip() for label, text in _lines(comparison, files))
 
 
 def _lines(comparison: Comparison, files: Mapping[str, Path]) -> Iterator[tuple[str, str]]:
@@ -36,6 +36,7 @@ def _lines(comparison: Comparison, files: Mapping[str, Path]) -> Iterator[tuple[
             yield label, _score(score, unit)
     if scores.chi2_per_dof is not None:
         yield "chi²", f"{scores.chi2_per_dof:.3g} per value (1: nothing but noise)"
+    yield from _structure(comparison)
     yield from _trends(comparison)
     yield from _worst(comparison)
     if files:
@@ -46,6 +47,15 @@ def _score(score: Score, unit: str) -> str:
     noise = "noise not known" if score.noise is None else f"noise alone {score.noise:.3g}{unit} ({score.source})"
     robust = f", {score.robust_rms:.3g}{unit} without outliers" if score.robust_rms < 0.98 * score.rms else ""
     return f"rms {score.rms:.3g}{unit}{robust}, {noise}"
+
+
+def _structure(comparison: Comparison) -> Iterator[tuple[str, str]]:
+    """Whether the residuals are alike at neighbours: what is not noise."""
+    kinds = (("position", comparison.structure.position), ("shear", comparison.structure.shear))
+    known = [(kind, found) for kind, found in kinds if found is not None]
+    alike = [f"{kind} (Moran's I {found.moran:.2f})" for kind, found in known if found.p < 0.001]
+    if alike:
+        yield "structure", f"neighbours are alike, which noise is not: {', '.join(alike)}"
 
 
 def _trends(comparison: Comparison) -> Iterator[tuple[str, str]]:

@@ -11,7 +11,7 @@ from geomdrap.criticism.compare_residuals import in_yarns, turns
 from geomdrap.criticism.comparison import Comparison
 from geomdrap.errors import MeasurementError
 from geomdrap.fishnet import drape
-from geomdrap.fishnet.pitch import choose_pitch
+from geomdrap.fishnet.pitch import choose_pitch, coarse_facets
 from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
 from geomdrap.measurement.match import Matched, match
 from geomdrap.measurement.noise import Noise, noise_of, repeats_of
@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from geomdrap.fishnet.seed import Origin
     from geomdrap.measurement.measurement import Measurement
     from geomdrap.surface import Surface
+
+
+FINER = 0.5
+"""Of the pitch of a drape, where the facets allow: a finer net reaches closer to the rim, where marks lie too."""
 
 
 def compare(
@@ -58,10 +62,15 @@ def compare(
 def suited_pitch(
     surface: Surface, measurement: Measurement, pitch: float | None = None
 ) -> tuple[float, tuple[str, ...]]:
-    """The pitch for a comparison, mm, and the sentence on it: as asked, or from part and marks."""
+    """The pitch for a comparison, mm, and the sentence on it: as asked, or from part and marks.
+
+    Finer than that of a drape where the facets allow.
+    """
     if pitch is not None:
         return pitch, ()
     wanted, _ = choose_pitch(surface)
+    if not coarse_facets(surface, FINER * wanted):
+        wanted *= FINER
     steps = [s for s in (mark_spacing(measurement.u), mark_spacing(measurement.v)) if s is not None]
     pitch = pitch_for_marks(min(steps) if steps else None, wanted)
     source = "the part and the marks" if steps else "the part"

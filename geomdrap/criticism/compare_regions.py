@@ -19,8 +19,10 @@ CLEAR = 5.0
 """Standard deviations of that average from which a region is worth a name."""
 PART_OF = 0.5
 """Of its peak: how far the averaged residual may fall within a region."""
-WIDTH = 3.0
-"""Spacings of the points: greatest distance of a region's points from its peak, so that a region has a place."""
+WIDTH = 3.05
+"""Spacings of the points: greatest distance of a region's points from its peak, so that a region has a place.
+
+No whole number, so that rounding does not decide on marks of a grid."""
 TIGHT = 0.2
 """Of the part's diagonal: radii of curvature below this are worth a word."""
 MOST = 5
@@ -34,9 +36,9 @@ LEAST_GAP = 0.01
 class Region:
     """A region of large residuals: ``name`` in words, ``position`` (3,) mm and ``u``, ``v`` mm of its worst point.
 
-    ``n`` points; ``along_warp``, ``along_weft``, ``normal`` mm and ``shear`` degrees: mean residuals; ``size`` mm the
-    length of the mean residual vector; ``score`` the peak in standard deviations of the noise, or of the usual
-    residual where the noise is not known.
+    ``n`` points; ``along_warp``, ``along_weft``, ``normal`` mm, ``shear``, ``warp_turn``, ``weft_turn`` degrees: mean
+    residuals; ``size`` mm the length of the mean residual vector; ``score`` the peak in standard deviations of the
+    noise, or of the usual residual where the noise is not known.
     """
 
     name: str
@@ -49,6 +51,8 @@ class Region:
     along_weft: float
     normal: float
     shear: float | None
+    warp_turn: float | None
+    weft_turn: float | None
     score: float
 
 
@@ -83,10 +87,12 @@ def worst_regions(comparison: Comparison) -> tuple[Region, ...]:
 
 
 def _in_sigmas(comparison: Comparison) -> list[np.ndarray]:
-    """Residuals of position (n, 3) and of shear (n, 1), where measured, in standard deviations."""
+    """Residuals of position (n, 3), shear and directions (n, 1), where measured, in standard deviations."""
     kinds = [(comparison.vector, comparison.noise_xyz.sigma)]
     if comparison.shear is not None:
         kinds.append((comparison.shear[:, None], comparison.noise_shear.sigma))
+    turns = [turn for turn in (comparison.warp_turn, comparison.weft_turn) if turn is not None]
+    kinds += [(turn[:, None], comparison.noise_turn.sigma) for turn in turns]
     return [values / (_usual(values) if sigma is None else sigma[:, None]) for values, sigma in kinds]
 
 
@@ -119,7 +125,10 @@ def typical_spacing(places: np.ndarray) -> float:
 def _region(comparison: Comparison, rows: np.ndarray, peak: int, score: float) -> Region:
     matched, parts = comparison.matched, comparison.parts[rows]
     x, y, z = comparison.measurement.points[peak].tolist()
-    shear = None if comparison.shear is None else comparison.shear[rows]
+    shear, warp, weft = (
+        None if values is None or np.isnan(values[rows]).all() else float(np.nanmean(values[rows]))
+        for values in (comparison.shear, comparison.warp_turn, comparison.weft_turn)
+    )
     along = parts.mean(axis=0)
     return Region(
         name=name_of_place(comparison, peak),
@@ -131,17 +140,22 @@ def _region(comparison: Comparison, rows: np.ndarray, peak: int, score: float) -
         along_warp=float(along[0]),
         along_weft=float(along[1]),
         normal=float(along[2]),
-        shear=None if shear is None or np.isnan(shear).all() else float(np.nanmean(shear)),
+        shear=shear,
+        warp_turn=warp,
+        weft_turn=weft,
         score=score,
     )
 
 
 def region_words(region: Region) -> str:
     """A region in one line: place, residual, shear."""
-    at = ", ".join(f"{x:.0f}" for x in region.position)
-    along = f"{region.along_warp:+.2f} warp, {region.along_weft:+.2f} weft, {region.normal:+.2f} normal"
-    shear = "" if region.shear is None else f"; shear {region.shear:+.1f}°"
-    return f"{region.name}: {region.size:.2f} mm ({along}){shear}; {region.n} points about ({at})"
+    at = ", ".join(f"{round(x) + 0:d}" for x in region.position)
+    parts = (region.along_warp, region.along_weft, region.normal)
+    numbers = [f"{round(part, 2) + 0.0:+.2f}" for part in parts]  # + 0.0 turns −0.00 into 0.00
+    along = f"{numbers[0]} warp, {numbers[1]} weft, {numbers[2]} normal"
+    angles = {"shear": region.shear, "warp": region.warp_turn, "weft": region.weft_turn}
+    more = [f"; {name} {round(angle, 1) + 0.0:+.1f}°" for name, angle in angles.items() if angle is not None]
+    return f"{region.name}: {region.size:.2f} mm ({along}){''.join(more)}; {region.n} points about ({at})"
 
 
 def name_of_place(comparison: Comparison, row: int) -> str:

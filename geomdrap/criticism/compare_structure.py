@@ -63,12 +63,12 @@ def _likeness(where: np.ndarray, values: np.ndarray, trusted: np.ndarray) -> Lik
     if kept.sum() < 2 * NEAR:
         return None
     near = neighbours(where[kept], NEAR)
-    index, spread = _moran(values[kept], near)
+    index, spread = morans_index(values[kept], near)
     z = index / spread
     return Likeness(index, z, float(norm.sf(z)))
 
 
-def _moran(values: np.ndarray, near: np.ndarray) -> tuple[float, float]:
+def morans_index(values: np.ndarray, near: np.ndarray) -> tuple[float, float]:
     """Moran's I of values (n, m) less its expectation, and its standard deviation for independent normal noise.
 
     A. Cliff, J. Ord, Spatial processes, 1981, with weights 1/k for the k neighbours in ``near`` (n, k). Of vectors it

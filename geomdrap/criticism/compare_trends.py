@@ -27,7 +27,9 @@ AGAINST = {
 
 @dataclass(frozen=True, eq=False)
 class Trend:
-    """Residual sizes of one ``kind`` (position in mm, shear in degrees) against one place (a key of AGAINST).
+    """Residual sizes of one ``kind`` against one place (a key of AGAINST).
+
+    Kinds are position in mm, shear, and warp and weft (turns of the directions) in degrees.
 
     ``edges`` (k + 1,) of the bins, ``n`` (k,) points in them, ``middle`` (k,) their median place, ``rms`` (k,) of the
     residual, ``mean`` (k,) of the signed residual (along the normal for positions). ``rho``: Spearman's rank
@@ -52,6 +54,10 @@ def trends_of(comparison: Comparison) -> tuple[Trend, ...]:
     kinds = [("position", comparison.size, comparison.parts[:, 2])]
     if comparison.shear is not None:
         kinds.append(("shear", np.abs(comparison.shear), comparison.shear))
+    if comparison.warp_turn is not None:
+        kinds.append(("warp", np.abs(comparison.warp_turn), comparison.warp_turn))
+    if comparison.weft_turn is not None:
+        kinds.append(("weft", np.abs(comparison.weft_turn), comparison.weft_turn))
     out = []
     for kind, size, signed in kinds:
         for against in AGAINST:
@@ -59,7 +65,7 @@ def trends_of(comparison: Comparison) -> tuple[Trend, ...]:
             kept = comparison.trusted & np.isfinite(size) & np.isfinite(place)
             if kept.sum() >= 3 * LEAST and np.ptp(place[kept]) > 0.0:
                 where = np.column_stack([comparison.matched.u, comparison.matched.v])[kept]
-                out.append(_trend(kind, against, place[kept], size[kept], signed[kept], where))
+                out.append(_trend(kind, against, _rounded(place[kept]), size[kept], signed[kept], where))
     return tuple(out)
 
 
@@ -91,6 +97,12 @@ def _edges(place: np.ndarray) -> np.ndarray:
     return edges if len(edges) > 1 else np.array([edges[0], edges[0] + 1.0])
 
 
+def _rounded(values: np.ndarray) -> np.ndarray:
+    """Values (n,) to 1e-9 of their largest, so that those equal but for rounding rank equally."""
+    step = max(1e-9 * float(np.abs(values).max()), 1e-300)
+    return np.round(values / step) * step
+
+
 def rank_correlation(
     x: np.ndarray, y: np.ndarray, where: np.ndarray
 ) -> tuple[float | None, float | None, float | None]:
@@ -101,15 +113,15 @@ def rank_correlation(
     """
     from scipy.stats import rankdata, t
 
-    a, b = (rankdata(values) - 0.5 * (len(values) + 1) for values in (x, y))
+    a, b = (rankdata(_rounded(values)) - 0.5 * (len(values) + 1) for values in (x, y))
     if not (a.any() and b.any()):
         return None, None, None
     rho = float(a @ b / np.sqrt((a @ a) * (b @ b)))
     both = pairs_by_distance(where, (a, b))
     shared = float(np.sum(both.count * both.mean[0] * both.mean[1]))
     n = len(x)
-    independent = 1.0 + n**2 * (a.var() * b.var()) / max(n * a.var() * b.var() + shared, 1e-300)
-    independent = float(np.clip(independent, 3.0, n))
+    chance = n * a.var() * b.var()  # what independent numbers would share; less than that is chance too
+    independent = float(np.clip(1.0 + n * chance / max(chance + shared, chance), 3.0, n))
     freedom = independent - 2.0
     statistic = abs(rho) * np.sqrt(freedom / max(1.0 - rho**2, 1e-12))
     return rho, float(2.0 * t.sf(statistic, freedom)), independent

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geomdrap.export import palette
-from geomdrap.export.compare_scale import CompareScale, signed_values, size_colours
-from geomdrap.export.compare_view import SHAFT, _dots, dot_size
+from geomdrap.export.compare_scale import CompareScale, signed_values, size_colours, thinned
+from geomdrap.export.compare_view import MOST_DOTS, MOST_VECTORS, SHAFT, dot_size, fabric_places, scatter_dots
 from geomdrap.export.flat_map import draw_rosette
 from geomdrap.export.layout import Box
 from geomdrap.export.picture import AROUND_MAP, caption, place
@@ -24,14 +24,13 @@ def draw_flat(figure: Any, box: Box, comparison: Comparison, scale: CompareScale
     """
     axes = place(figure, box.inset(*AROUND_MAP))
     _frame(axes, comparison)
-    matched = comparison.matched
-    where = np.column_stack([matched.u, matched.v])
+    where = fabric_places(comparison)
     if comparison.measurement.labelled:
         _vectors(axes, comparison, where, scale)
     else:
         values, _, _ = signed_values(comparison)
-        drawn = comparison.trusted & np.isfinite(values)
-        _dots(axes, where[drawn], values[drawn], scale, dot_size(int(drawn.sum())))
+        drawn = thinned(where, np.flatnonzero(comparison.trusted & np.isfinite(values)), MOST_DOTS)
+        scatter_dots(axes, where[drawn], values[drawn], scale, dot_size(len(drawn)))
     _marks(axes, where, comparison)
     caption(figure, box, title)
 
@@ -62,7 +61,7 @@ def _frame(axes: Any, comparison: Comparison) -> None:
 
 
 def _vectors(axes: Any, comparison: Comparison, where: np.ndarray, scale: CompareScale) -> None:
-    rows = np.flatnonzero(comparison.trusted)
+    rows = thinned(where, np.flatnonzero(comparison.trusted), MOST_VECTORS)
     rows = rows[np.argsort(comparison.size[rows], kind="stable")]
     axes.quiver(
         *where[rows].T,

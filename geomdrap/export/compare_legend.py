@@ -57,7 +57,8 @@ def draw_dot_bar(
     from matplotlib import colormaps
 
     _, name, unit = signed_values(comparison)
-    title = f"{name}, {unit.strip()}" + ("      ×: stands out, set apart" if comparison.outliers else "")
+    turn = " (counter-clockwise)" if "direction" in name else ""
+    title = f"{name}{turn}, {unit.strip()}" + ("      ×: stands out, set apart" if comparison.outliers else "")
     _bar(figure, box, (-scale.signed, scale.signed), colormaps[SIGNED_COLOURS], title)
 
 

@@ -21,6 +21,8 @@ from geomdrap.export.whole import write_whole
 if TYPE_CHECKING:
     from geomdrap.criticism import Comparison
 
+NOISE_ONLY = 1.15
+"""Times what noise alone would give: below, residual vectors are said to be noise."""
 HEADER = 1.1
 PANELS = 4.7
 BARS = 0.8
@@ -117,10 +119,14 @@ def _panels(figure: Any, comparison: Comparison, bottom: float, scale: CompareSc
     labelled = comparison.measurement.labelled
     _, name, _ = signed_values(comparison)
     views = {"camera": camera, "scale": scale}
-    title = "From where the model has a mark to where it lies" if labelled else "Off the part, along its normal"
+    title = "From the predicted to the measured place" if labelled else "Off the part, along its normal"
+    score = comparison.scores.position
+    if score is not None and score.noise is not None and score.rms < NOISE_ONLY * score.noise:
+        title += ": noise only"
     draw_vectors(figure, boxes[0], comparison, skin, title=title, **views)
     along = f"along warp and weft, vectors × {scale.factor:g}"
-    draw_flat(figure, boxes[1], comparison, scale, f"On the flat fabric: {along if labelled else name.lower()}")
+    rest = "the same as on the right"
+    draw_flat(figure, boxes[1], comparison, scale, f"On the flat fabric: {along if labelled else rest}")
     draw_dots(figure, boxes[2], comparison, skin, title=name, **views)
 
 
@@ -132,7 +138,8 @@ def _bars(figure: Any, comparison: Comparison, bottom: float, scale: CompareScal
 def _trends(figure: Any, comparison: Comparison, kind: str, bottom: float) -> None:
     """A row of diagrams of one kind of residual, and what is in them."""
     wide, high = figure.get_size_inches()
-    words = f"What the {kind} residual goes with: red, root mean square in bins; grey band, noise alone"
+    name = {"warp": "warp direction", "weft": "weft direction"}.get(kind, kind)
+    words = f"What the {name} residual goes with: red, root mean square in bins; grey band, noise alone"
     y = (bottom + TRENDS - 0.02) / high
     figure.text((MARGIN + 0.15) / wide, y, words, fontsize=9.5, fontweight="bold", color=palette.INK, va="top")
     trends = [trend for trend in comparison.trends if trend.kind == kind]

@@ -49,10 +49,22 @@ def signed_values(comparison: Comparison) -> tuple[Floats, str, str]:
     if comparison.shear is not None:
         return comparison.shear, "Shear, measured less predicted", "°"
     if comparison.warp_turn is not None:
-        return comparison.warp_turn, "Warp direction, measured less predicted (counter-clockwise)", "°"
+        return comparison.warp_turn, "Warp direction, measured less predicted", "°"
     if comparison.weft_turn is not None:
-        return comparison.weft_turn, "Weft direction, measured less predicted (counter-clockwise)", "°"
+        return comparison.weft_turn, "Weft direction, measured less predicted", "°"
     return comparison.parts[:, 2], "Distance from the part along its normal", " mm"
+
+
+def thinned(places: Floats, rows: NDArray[np.int64], most: int) -> NDArray[np.int64]:
+    """About ``most`` of the rows, evenly spread over the places (n, 2); all of them where they are fewer."""
+    if len(rows) <= most:
+        return rows
+    there = places[rows]
+    size = np.ptp(there, axis=0)
+    side = float(np.sqrt(max(size[0] * size[1], 1e-12 * float(size.max()) ** 2) / most))
+    square = np.floor((there - there.min(axis=0)) / max(side, 1e-300)).astype(np.int64)
+    _, first = np.unique(square, axis=0, return_index=True)
+    return rows[np.sort(first)]
 
 
 def _quantile(values: Floats) -> float:

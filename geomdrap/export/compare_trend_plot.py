@@ -17,9 +17,11 @@ if TYPE_CHECKING:
 
 AROUND = (0.62, 0.52, 0.15, 0.62)
 NOISE = "#9aa5b1"
-UNITS = {"position": "mm", "shear": "°"}
-CLEAR, POSSIBLE = 0.01, 0.2
+UNITS = {"position": "mm", "shear": "°", "warp": "°", "weft": "°"}
+CLEAR, POSSIBLE = 0.01, 0.1
 """Probabilities below which a correlation is called one, and may be one."""
+SLIGHT = 0.25
+"""Rank correlations below this are not worth a word, however sure."""
 
 
 def draw_trend(figure: Any, box: Box, comparison: Comparison, trend: Trend, top: float) -> None:
@@ -49,11 +51,13 @@ def verdict(trend: Trend) -> str:
     """What the correlation says, in words."""
     if trend.rho is None or trend.p is None:
         return "too few points to tell"
-    numbers = f"ρ = {trend.rho:+.2f}, p = {trend.p:.2g}"
+    numbers = f"ρ = {round(trend.rho, 2) + 0.0:+.2f}, p = {trend.p:.2g}"
     verb = "grow" if trend.rho > 0 else "fall"
-    if trend.p < CLEAR:
-        return f"{verb}s with it ({numbers})"
-    return f"may {verb} with it ({numbers})" if trend.p < POSSIBLE else f"no trend beyond chance ({numbers})"
+    if trend.p > POSSIBLE:
+        return f"no trend beyond chance ({numbers})"
+    if abs(trend.rho) < SLIGHT:
+        return f"hardly goes with it ({numbers})"
+    return f"{verb}s with it ({numbers})" if trend.p < CLEAR else f"may {verb} with it ({numbers})"
 
 
 def _noise_band(axes: Any, trend: Trend, score: Score | None, width: int) -> None:
@@ -68,9 +72,9 @@ def _noise_band(axes: Any, trend: Trend, score: Score | None, width: int) -> Non
 
 def _sizes(comparison: Comparison, kind: str) -> np.ndarray:
     """Sizes (n,) of the residuals of one kind."""
-    if kind == "position" or comparison.shear is None:
-        return comparison.size
-    return np.abs(comparison.shear)
+    known = {"shear": comparison.shear, "warp": comparison.warp_turn, "weft": comparison.weft_turn}
+    values = known.get(kind)
+    return comparison.size if values is None else np.abs(values)
 
 
 def _limits(trend: Trend) -> tuple[float, float]:

@@ -9,7 +9,13 @@ from numpy.typing import NDArray
 
 from geomdrap.export import palette
 from geomdrap.export.camera import Camera, Viewport, extent, two_views
-from geomdrap.export.compare_scale import SIGNED_COLOURS, CompareScale, signed_values, size_colours
+from geomdrap.export.compare_scale import (
+    SIGNED_COLOURS,
+    CompareScale,
+    signed_values,
+    size_colours,
+    thinned,
+)
 from geomdrap.export.flat_map import draw_rosette
 from geomdrap.export.layout import Box
 from geomdrap.export.picture import (
@@ -32,6 +38,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
+MOST_VECTORS, MOST_DOTS = 700, 1500
+"""Vectors and dots on a panel; of more, evenly spread ones are drawn."""
 SHAFT = 0.0016
 """Width of a vector's shaft, of the width of the panel."""
 
@@ -57,7 +65,8 @@ def draw_vectors(
     start = view.viewport.pixels(comparison.matched.point)
     end = view.viewport.pixels(comparison.matched.point + scale.factor * comparison.vector)
     way, size = end - start, comparison.size
-    order = np.flatnonzero(seen & comparison.trusted)
+    order = thinned(fabric_places(comparison), np.flatnonzero(seen & comparison.trusted), MOST_VECTORS)
+    drawn = f", {len(order)} drawn" if len(order) < (seen & comparison.trusted).sum() else ""
     order = order[np.argsort(size[order], kind="stable")]  # large ones on top
     vectors = axes.quiver(
         *start[order, :2].T,
@@ -75,7 +84,7 @@ def draw_vectors(
     )
     _mark_outliers(axes, start, seen, comparison, "position")
     caption(figure, box, title)
-    draw_scale_bar(figure, box, view.viewport.scale, f"vectors × {scale.factor:g}{words}")
+    draw_scale_bar(figure, box, view.viewport.scale, f"vectors × {scale.factor:g}{drawn}{words}")
     draw_triad(figure, box, camera)
     return vectors
 
@@ -88,8 +97,9 @@ def draw_dots(
     seen = _in_sight(view.viewport, skin.surface, comparison)
     values, _, _ = signed_values(comparison)
     place_of = view.viewport.pixels(comparison.matched.point)
-    drawn = seen & np.isfinite(values) & comparison.trusted
-    dots = _dots(axes, place_of[drawn, :2], values[drawn], scale, dot_size(int(drawn.sum())))
+    drawn = np.flatnonzero(seen & np.isfinite(values) & comparison.trusted)
+    drawn = thinned(fabric_places(comparison), drawn, MOST_DOTS)
+    dots = scatter_dots(axes, place_of[drawn, :2], values[drawn], scale, dot_size(len(drawn)))
     _mark_outliers(axes, place_of, seen, comparison, "shear" if comparison.shear is not None else "position")
     caption(figure, box, title)
     draw_scale_bar(figure, box, view.viewport.scale, words.removeprefix("; "))
@@ -97,12 +107,18 @@ def draw_dots(
     return dots
 
 
+def fabric_places(comparison: Comparison) -> Floats:
+    """Fabric coordinates (n, 2) of the points, NaN where there are none."""
+    return np.column_stack([comparison.matched.u, comparison.matched.v])
+
+
 def dot_size(count: int) -> float:
     """Area of a dot in points² for so many of them."""
     return float(np.clip(9000.0 / max(count, 1), 6.0, 60.0))
 
 
-def _dots(axes: Any, places: Floats, values: Floats, scale: CompareScale, area: float) -> Any:
+def scatter_dots(axes: Any, places: Floats, values: Floats, scale: CompareScale, area: float) -> Any:
+    """Dots of ``area`` points² at places (n, 2) on the axes, coloured by signed values (n,), large ones on top."""
     order = np.argsort(np.abs(values), kind="stable")
     return axes.scatter(
         *places[order].T,
@@ -136,7 +152,7 @@ def _draw_part(figure: Any, box: Box, comparison: Comparison, skin: Skin, camera
         draw_rosette(axes, view.origin, warp, weft)
     seen = _in_sight(view.viewport, skin.surface, comparison)
     hidden = int((comparison.used & ~seen).sum())
-    return axes, view, f"; {hidden} points on the far side" if hidden else ""
+    return axes, view, f"; {hidden} points hidden" if hidden else ""
 
 
 def _grey(image: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -8,6 +8,12 @@ NEIGHBOURS = 12
 ROUNDS = 6
 TUNING = 4.685
 """Of Tukey's bisquare: weight 0 beyond so many robust standard deviations (95 % efficient for normal noise)."""
+ROUNDING = 1e-6
+"""Of the range of the values: what lies this close to a plane lies on it."""
+SAME = 1e-7
+"""Of the extent of the places: differences below this are rounding."""
+HOLD = 1e-7
+"""Of the weights: holds up planes whose neighbours lie on a line."""
 MAD_TO_SIGMA = 1.4826
 
 
@@ -32,6 +38,8 @@ def neighbours(places: np.ndarray, count: int = NEIGHBOURS) -> np.ndarray:
 
     Which of equally near ones are taken depends on the places alone, not on the order of the rows.
     """
+    # rounded, so that marks on a grid stay equally near after a change of unit
+    places = np.round((places - places.min(axis=0)) / max(SAME * float(np.ptp(places, axis=0).max()), 1e-300))
     order = np.lexsort(places.T)
     out = np.empty((len(places), min(count, len(places) - 1)), np.int64)
     out[order] = order[_nearest_others(places[order], out.shape[1])]
@@ -69,7 +77,7 @@ def deviations(places: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.n
         plane, gram = _fit(basis, around, weight)
         off = np.linalg.norm(around - basis @ plane, axis=2)
         spread = np.median(off, axis=1, keepdims=True) * MAD_TO_SIGMA / np.sqrt(width)
-        reach = TUNING * np.sqrt(width) * np.maximum(spread, 1e-12 * (np.abs(around).max() + 1e-300))
+        reach = TUNING * np.sqrt(width) * np.maximum(spread, ROUNDING * float(np.ptp(values)) + 1e-300)
         weight = np.maximum(1.0 - (off / reach) ** 2, 0.0) ** 2 + 1e-6
     plane, gram = _fit(basis, around, weight)
     leverage = np.linalg.inv(gram)[:, 0, 0]
@@ -80,6 +88,6 @@ def _fit(basis: np.ndarray, around: np.ndarray, weight: np.ndarray) -> tuple[np.
     """Weighted planes (n, 3, k) and their normal matrices (n, 3, 3), held up where the neighbours lie on a line."""
     weighted = basis * weight[..., None]
     gram = np.einsum("nmi,nmj->nij", weighted, basis)
-    gram = gram + np.eye(3) * np.array([1e-9, 1e-3, 1e-3]) * weight.sum(axis=1)[:, None, None]
+    gram = gram + np.eye(3) * np.array([0.0, HOLD, HOLD]) * weight.sum(axis=1)[:, None, None]
     right = np.einsum("nmi,nmk->nik", weighted, around)
     return np.linalg.solve(gram, right), gram

@@ -27,7 +27,12 @@ def mark_spacing(values: np.ndarray | None) -> float | None:
 
 
 def pitch_for_marks(spacing: float | None, wanted: float) -> float:
-    """A pitch near ``wanted`` mm that divides the spacing of the marks, so that they lie on nodes."""
+    """A pitch of ``wanted`` mm down to half of it that divides the spacing of the marks, so that they lie on nodes.
+
+    Of marks closer than that, every so-many-th lies on a node.
+    """
     if spacing is None:
         return wanted
-    return spacing / max(1, math.ceil(spacing / wanted - 1e-9))
+    if spacing < wanted:
+        return spacing * math.floor(wanted / spacing + 1e-9)
+    return spacing / math.ceil(spacing / wanted - 1e-9)

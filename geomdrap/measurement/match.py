@@ -9,12 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.measurement.inverse import fabric_coordinates
+from geomdrap.measurement.rim import distance_to_rim
 
 if TYPE_CHECKING:
     from geomdrap.fishnet import Net
     from geomdrap.measurement.measurement import Measurement
+    from geomdrap.surface import Nearest
 
     Reasons = Callable[[Net, np.ndarray, np.ndarray], list[str]]
+
+NO_CELL = "no cell of the net here: a bare part of the tool, or between the last whole cell and the rim"
+BEYOND = "beyond the rim of the part"
 
 BESIDE = 0.02
 """Of the distance from the part, and of the pitch: a foot this far off the normal lies beyond the rim."""
@@ -53,7 +58,9 @@ def match(net: Net, measurement: Measurement) -> Matched:
     u, v = fabric_coordinates(net, near.face, near.point)
     _, shear = net.interpolate(u, v)
     matched = _predicted(net, u, v, near.point, shear, _place_reasons)
-    return _without_beside(net, measurement.points, matched)
+    beside = _beside(net, measurement.points, near).tolist()
+    reason = tuple(BEYOND if b else r for b, r in zip(beside, matched.reason, strict=True))
+    return _blanked(matched, np.where(beside, np.nan, 1.0)[:, None], reason)
 
 
 def _predicted(
@@ -75,44 +82,33 @@ def _label_reasons(net: Net, u: np.ndarray, v: np.ndarray) -> list[str]:
     from geomdrap.fishnet import Status
 
     i, j = (np.searchsorted(c, x, side="right") - 1 for c, x in ((net.u, u), (net.v, v)))
-    rows, columns = net.status.shape
+    far = [(x < c[0] - net.pitch) | (x > c[-1] + net.pitch) for c, x in ((net.u, u), (net.v, v))]
     out = []
-    for k, m in zip(i.tolist(), j.tolist(), strict=True):
-        if k < -1 or m < -1 or k > rows - 1 or m > columns - 1:
+    for k, m, beyond in zip(i.tolist(), j.tolist(), (far[0] | far[1]).tolist(), strict=True):
+        if beyond:
             out.append("beyond the rim of the net")
             continue
         # status_around has a frame of one node: corner (k, m) is its [k + 1, m + 1]
         corners = net.status_around[k + 1 : k + 3, m + 1 : m + 3].ravel()
         absent = [Status(c) for c in corners.tolist() if c not in (Status.PRESENT, Status.UNREACHED)]
-        out.append(absent[0].reason if absent else "no whole cell of the net here")
+        out.append(absent[0].reason if absent else NO_CELL)
     return out
 
 
 def _place_reasons(net: Net, u: np.ndarray, v: np.ndarray) -> list[str]:
-    found = np.isfinite(u).tolist()
-    return ["no whole cell of the net here" if k else "on a bare part of the tool" for k in found]
+    return [NO_CELL] * len(u)
 
 
-def _without_beside(net: Net, points: np.ndarray, matched: Matched) -> Matched:
-    """Points whose nearest place lies on the rim, askew to its normal, lie beside the part: no prediction."""
-    away = points - matched.point
-    normal = np.einsum("ij,ij->i", away, matched.normal)[:, None] * matched.normal
-    aside = np.linalg.norm(away - normal, axis=1)
-    on_rim = _nearest_on_rim(net, matched.point)
-    beside = on_rim & (aside > BESIDE * (np.linalg.norm(away, axis=1) + net.pitch))
-    pairs = zip(beside.tolist(), matched.reason, strict=True)
-    reason = tuple("beyond the rim of the part" if b else r for b, r in pairs)
-    return _blanked(matched, np.where(beside, np.nan, 1.0)[:, None], reason)
+def _beside(net: Net, points: np.ndarray, near: Nearest) -> np.ndarray:
+    """Which points (n, 3) lie beside the part: their nearest place is on the rim, askew to its normal."""
+    away = points - near.point
+    normal = net.surface.normals[near.face]
+    aside = np.linalg.norm(away - np.einsum("ij,ij->i", away, normal)[:, None] * normal, axis=1)
+    on_rim = distance_to_rim(net.surface, near.point) < 1e-6 * net.surface.diagonal
+    return np.asarray(on_rim & (aside > BESIDE * (near.distance + net.pitch)))
 
 
 def _blanked(matched: Matched, blank: np.ndarray, reason: tuple[str, ...]) -> Matched:
     """The same with predictions times ``blank`` (n, 1), which is 1 or NaN."""
     vectors = {name: getattr(matched, name) * blank for name in ("point", "warp", "weft", "normal")}
     return replace(matched, shear=matched.shear * blank[:, 0], reason=reason, **vectors)
-
-
-def _nearest_on_rim(net: Net, point: np.ndarray) -> np.ndarray:
-    """Which points (n, 3) of the surface lie on its boundary."""
-    from geomdrap.measurement.rim import distance_to_rim
-
-    return distance_to_rim(net.surface, point) < 1e-6 * net.surface.diagonal

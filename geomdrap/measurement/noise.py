@@ -18,6 +18,8 @@ LEAST_REPEATS = 5
 DISAGREE = 1.5
 """Factor between the noise given and the one that repeats show from which it is worth a warning."""
 
+DIGITS = 1e-9
+"""Of the values: repeats that scatter less are copies."""
 ROUNDING = 1e-6
 """Of the residual: neighbour differences below this are rounding, not noise."""
 
@@ -56,6 +58,8 @@ def noise_of(
     if given is not None and not (np.isfinite(given) and given > 0.0):
         raise MeasurementError(f"{name} is a standard deviation and must be above 0, not {given:g}")
     repeats, freedom = pooled(values, group)
+    if not repeats > DIGITS * float(np.nanmax(np.abs(values), initial=0.0)):
+        freedom = 0  # copies of a row are no repeats
     fallback, source = _fallback(given, repeats, freedom, residual, places)
     sigma, source = _filled(column, fallback, source, len(values))
     if sigma is None:

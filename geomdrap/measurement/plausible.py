@@ -18,8 +18,8 @@ OFF = 0.1
 """Of the part's diagonal: when half of the points lie further off than this, they are in another frame or unit."""
 FITS = 0.02
 """Of the diagonal: half of the points this near say that a change of unit explains it."""
-SMALL = 0.06
-"""Of the part's diagonal: a measured area this small is a small area, or another unit."""
+SMALL, TINY = 0.12, 0.01
+"""Of the part's diagonal: a measured area this small is a small area or another unit; this tiny, another unit."""
 BETTER = 0.25
 """Other labels explain a measurement where they bring half of the points to this share of the distance."""
 
@@ -48,7 +48,7 @@ def require_on_part(surface: Surface, measurement: Measurement) -> tuple[str, ..
             f"{measurement.source}: the points span {extent:.4g} mm and the part {size:.4g} mm; in {unit} they would "
             f"lie on the part: use --unit-measured {unit}"
         )
-        if distance > OFF * size or _labels_agree(measurement, FACTORS[unit]):
+        if distance > OFF * size or extent < TINY * size or _labels_agree(measurement, FACTORS[unit]):
             raise MeasurementError(hint)
         return (hint + " if so",)
     if distance > OFF * size:

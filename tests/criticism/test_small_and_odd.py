@@ -1,0 +1,67 @@
+"""Few points, coincident points, wild values: a comparison, or a sentence."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import geomdrap as gd
+from geomdrap.criticism.compare import compare_net
+from geomdrap.export.compare_json import as_dict
+from geomdrap.export.compare_table import as_text
+from geomdrap.surface import shapes
+
+
+@pytest.fixture(scope="module")
+def net():
+    return gd.drape(shapes.sphere_cap(80.0, 60.0, 4.0), "centroid", 20.0, 8.0)
+
+
+def _all_of(c):
+    document = as_dict(c)
+    assert document["used"] + document["unmatched"] == document["points"]
+    assert len(as_text(c).splitlines()) == document["points"] + 1
+    return document
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 7, 8, 20])
+@pytest.mark.parametrize("same", [True, False])
+@pytest.mark.parametrize("labelled", [True, False])
+def test_few_and_coincident_points_are_compared(net, n, same, labelled):
+    u, v = np.random.default_rng(n).uniform(-30.0, 30.0, (2, n))
+    if same:
+        u[:], v[:] = 10.0, 5.0
+    points, shear = net.interpolate(u, v)
+    labels = {"u": u, "v": v} if labelled else {}
+    document = _all_of(compare_net(net, gd.Measurement("few", points, shear=shear, **labels)))
+    assert document["used"] == n
+    assert document["position"]["rms"] == pytest.approx(0.0, abs=1e-6)
+
+
+FLOATS = st.floats(-120.0, 120.0)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(st.tuples(FLOATS, FLOATS, FLOATS, FLOATS, FLOATS, st.one_of(st.just(np.nan), st.floats(-89.0, 89.0))), min_size=1, max_size=30), st.booleans())
+def test_any_points_are_compared_or_refused(net, rows, labelled):
+    table = np.array(rows)
+    labels = {"u": table[:, 3], "v": table[:, 4]} if labelled else {}
+    measurement = gd.Measurement("any", table[:, :3], shear=table[:, 5], **labels)
+    try:
+        c = compare_net(net, measurement, sigma_xyz=0.2)
+    except gd.GeomdrapError as error:
+        assert "any" in str(error)
+        return
+    document = _all_of(c)
+    assert document["position"]["rms"] >= 0.0
+
+
+def test_a_table_is_asked_for_as_many_values_as_a_fit_has_unknowns():
+    from geomdrap.measurement.measurement import require_values
+
+    m = gd.Measurement("few.csv", np.zeros((2, 3)), u=np.arange(2.0), v=np.zeros(2))
+    require_values(m, 3, "the placement")
+    with pytest.raises(gd.MeasurementError, match=r"few.csv holds 2 points with 6 .* 6 unknowns"):
+        require_values(m, 6, "the placement")

@@ -1,0 +1,112 @@
+"""Mistakes in a table: single values, labels, units, frames."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from analytic_tools import measured
+
+import geomdrap as gd
+from geomdrap.measurement.match import match
+from geomdrap.measurement.outliers import find_outliers
+from geomdrap.measurement.plausible import check_labels, require_on_part
+
+SIGMA = 0.2
+
+
+@pytest.fixture(scope="module")
+def case():
+    surface, measurement, laid = measured("springback")
+    net = gd.drape(surface, laid["origin"], laid["angle"], 4.0)
+    return net, measurement
+
+
+def _outliers(net, measurement):
+    n = len(measurement)
+    return find_outliers(net, measurement, match(net, measurement), np.full(n, SIGMA), np.full(n, 0.6))
+
+
+def test_good_data_have_no_outliers(case):
+    assert _outliers(*case) == ()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_all_slips_of_ten_sigmas_are_found_and_nothing_else(case, seed):
+    net, m = case
+    rng = np.random.default_rng(seed)
+    rows = rng.choice(len(m), 6, replace=False)
+    points, shear = m.points.copy(), m.shear.copy()
+    way = rng.normal(size=(6, 3))
+    points[rows] += 12.0 * SIGMA * way / np.linalg.norm(way, axis=1, keepdims=True)
+    shear[rows[:3]] += 9.0
+    found = _outliers(net, replace(m, points=points, shear=shear))
+    assert {o.row for o in found if o.kind == "position"} == set(rows.tolist())
+    assert {o.row for o in found if o.kind == "shear"} == set(rows[:3].tolist())
+    assert {o.line for o in found} == {int(m.row[r]) for r in rows}
+
+
+@pytest.mark.parametrize("shift", [(1, 0), (0, -1), (-1, 1), (2, 0)])
+def test_a_label_that_is_off_by_marks_is_recognised(case, shift):
+    net, m = case
+    row = int(np.argmin(np.hypot(m.u, m.v)))
+    u, v = m.u.copy(), m.v.copy()
+    u[row] += 16.0 * shift[0]
+    v[row] += 16.0 * shift[1]
+    found = [o for o in _outliers(net, replace(m, u=u, v=v)) if o.kind == "position"]
+    assert [(o.row, o.shift) for o in found] == [(row, (-shift[0], -shift[1]))]
+
+
+def test_good_labels_are_not_doubted(case):
+    assert check_labels(*case) == ()
+
+
+@pytest.mark.parametrize(
+    ("matrix", "words"),
+    [
+        ([[0, 1], [1, 0]], "u and v are swapped:"),
+        ([[-1, 0], [0, 1]], "u runs the other way"),
+        ([[1, 0], [0, -1]], "v runs the other way"),
+        ([[-1, 0], [0, -1]], "180 degrees"),
+        ([[0, 1], [-1, 0]], "turned by 90 degrees"),
+        ([[0, -1], [1, 0]], "turned by 90 degrees"),
+    ],
+)
+def test_swapped_and_mirrored_labels_are_noticed(case, matrix, words):
+    net, m = case
+    u, v = np.array(matrix) @ np.stack([m.u, m.v])
+    warnings = check_labels(net, replace(m, u=u, v=v))
+    assert len(warnings) == 1
+    assert words in warnings[0]
+
+
+def test_labels_counted_from_another_mark_are_noticed(case):
+    net, m = case
+    warnings = check_labels(net, replace(m, u=m.u + 16.0))
+    assert "all labels are off by a mark (by +1 along u, +0 along v)" in warnings[0]
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("m", 1000.0), ("in", 25.4), ("cm", 10.0)])
+@pytest.mark.parametrize("labelled", [True, False])
+def test_points_in_another_unit_are_refused_and_the_unit_named(case, unit, factor, labelled):
+    net, m = case
+    u, v = (m.u, m.v) if labelled else (None, None)
+    with_unit = replace(m, points=m.points / factor, u=u, v=v)
+    try:
+        said = " ".join(require_on_part(net.surface, with_unit))
+        assert not labelled  # without labels a small patch in the middle may be meant
+    except gd.MeasurementError as error:
+        said = str(error)
+    assert f"--unit-measured {unit}" in said
+
+
+def test_points_in_another_frame_are_refused(case):
+    net, m = case
+    with pytest.raises(gd.MeasurementError, match="part's coordinates"):
+        require_on_part(net.surface, replace(m, points=m.points + [0.0, 0.0, 900.0]))
+
+
+def test_a_small_patch_in_the_right_unit_is_no_mistake(case):
+    net, m = case
+    assert require_on_part(net.surface, m.take(np.hypot(m.u, m.v) < 40.0)) == ()
