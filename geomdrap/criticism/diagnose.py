@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
-from geomdrap.criticism.evidence import rivals
+from geomdrap.criticism.evidence import FAMILY, LEAST_SHARE, rivals
 from geomdrap.criticism.experiment import Experiment, Layup
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
 from geomdrap.criticism.model import Fitted, fit_placement, refit, unfitted
+from geomdrap.criticism.plateau import Plateau, plateau
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round, judge_of, try_effects
 from geomdrap.criticism.table import tried_of, values_of
@@ -35,6 +36,7 @@ Progress = Callable[[float, str], None]
 
 MOST_EFFECTS = 3
 SHIFTED = 0.5  # mm: a seed that lies further off than this is named
+LOCKING = "locking"
 TURNED = 0.4  # degrees: likewise
 CERTAIN = 3.0  # standard deviations of the placement
 WORTH = 0.03  # of the first misfit: what a further effect must explain
@@ -131,6 +133,11 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         model = refit(experiment, judge_of(experiment, rows).whiten(scatter), model)
     left = left_over(experiment, model, scatter)
     alike = rivals(rounds[len(names) - 1].evidence) if names else ()
+    stop = shear_stops(experiment, rounds[0].base)
+    if stop is not None and left.structured and LOCKING in _possible(rounds[0]):
+        names, alike = [LOCKING], (LOCKING,)
+        model, scatter = rounds[0].trial(LOCKING)
+        left = left_over(experiment, model, scatter)
     verdict, candidates = _verdict(experiment, model, scatter, names, alike, left)
     steps = _steps(experiment, rounds, names)
     return Diagnosis(
@@ -149,6 +156,20 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         hints=hints_for(experiment, rounds, verdict, candidates, model, left),
         notes=(*notes, *_failures(rounds)),
     )
+
+
+def shear_stops(experiment: Experiment, base: Fitted) -> Plateau | None:
+    """The plateau of the shear, if it was measured and has one."""
+    if "shear" not in experiment.channels:
+        return None
+    own = experiment.channel_of() == experiment.channels.index("shear")
+    measured, predicted = experiment.measured[own], (experiment.measured - base.fit.residual)[own]
+    return plateau(measured, predicted, float(np.median(experiment.noise[own])))
+
+
+def _possible(of: Round) -> tuple[str, ...]:
+    """Effects that explain a good share, far beyond chance."""
+    return tuple(e.name for e in of.evidence if e.p_family < FAMILY and e.share >= LEAST_SHARE)
 
 
 def _failures(rounds: Sequence[Round]) -> tuple[str, ...]:
@@ -174,7 +195,7 @@ def _verdict(
     """Verdict and candidates."""
     if names and len(alike) > 1:
         return AMBIGUOUS, (*names[:-1], *alike)
-    if left.structured:
+    if left.structured and list(names) != [LOCKING]:
         return UNKNOWN, tuple(names)
     if names:
         return "+".join(names), tuple(names)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 CHANNELS = ("along", "across", "normal", "shear", "warp", "weft")
 KEPT = 12  # surfaces with effects on them that are kept
-FINE, COARSE = 7000, 1500  # nodes of the net, for what costs milliseconds and for what costs seconds
+FINE, COARSE = 7000, 900  # nodes of the net, for what costs milliseconds and for what costs seconds
 
 
 @dataclass(frozen=True)

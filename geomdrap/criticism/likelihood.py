@@ -16,6 +16,7 @@ from geomdrap.criticism.scatter import Smoothness, scatter_covariance, shifts
 
 RATIO = 1.4  # between neighbouring correlation lengths that are tried
 SIZES = (0.0, 0.3, 0.5, 0.8, 1.3, 2.0, 3.2, 5.0, 8.0, 13.0, 20.0)  # τ over the positions' noise
+TURNING = 2.5  # degrees: scatter of the yarns' directions and shear, which no good lay-up exceeds
 WIDEST = 0.3  # of the measured patch's longer side: what varies more slowly is no scatter
 
 
@@ -130,7 +131,7 @@ class Judge:
     def _climb(self, value: Callable[[Scatter], float]) -> None:
         """Coordinate search over length, size and smoothness for the greatest value."""
         length = len(self.lengths) // 2
-        size = 3
+        size = max(n for n in range(4) if n == 0 or SIZES[n] * self.unit <= largest_scatter(self.lengths[length]))
         kind = Smoothness.SMOOTH
 
         def here(length: int, size: int, kind: Smoothness) -> float:
@@ -151,10 +152,17 @@ class Judge:
             ):
                 if not (0 <= new_length < len(self.lengths) and 0 <= new_size < len(SIZES)):
                     continue
+                if SIZES[new_size] * self.unit > largest_scatter(self.lengths[new_length]):
+                    continue
                 there = here(new_length, new_size, new_kind)
                 if there > best + 1e-9:
                     best, length, size, kind, improved = there, new_length, new_size, new_kind, True
                     break
+
+
+def largest_scatter(length: float) -> float:
+    """Largest scatter, mm, with a correlation length: the shear that it makes has a standard deviation √2·size/length."""
+    return float(np.radians(TURNING)) * length / float(np.sqrt(2.0))
 
 
 def square_beside(residual: np.ndarray, slopes: np.ndarray) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -27,6 +28,7 @@ SHAPES = (0.05, 0.2, 0.4, 0.6)  # of the range of a parameter that does nothing 
 HALVINGS = 3  # of the gaps between probes
 SAME = 3.0  # of chi-square: probes this close do equally well
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
+HOPELESS = 0.5  # of the way from the best model back to the base
 NOTHING = 1e-6  # of the noise: less is no signature
 
 
@@ -127,8 +129,14 @@ def fit_placement(experiment: Experiment, whiten: Whiten, start: np.ndarray | No
     )
 
 
-def add_effect(experiment: Experiment, whiten: Whiten, base: Fitted, effect: str) -> Fitted:
-    """The base model with one effect more, fitted together with everything in the base."""
+def add_effect(
+    experiment: Experiment, whiten: Whiten, base: Fitted, effect: str, least: float = -math.inf
+) -> Fitted:
+    """The base model with one effect more, fitted together with everything in the base.
+
+    ``least`` is the chi-square of the best model known: a costly effect that promises to stay far above it is not
+    fitted to the end.
+    """
     model = base.model.with_effect(effect)
     predict = predictor(experiment, model)
     start = _start(experiment, predict, whiten, base, effect)
@@ -138,16 +146,26 @@ def add_effect(experiment: Experiment, whiten: Whiten, base: Fitted, effect: str
     slopes = take_slopes(predict, start, predict(start), model.steps, low, high, np.arange(len(start))[own])
     slopes[:, : len(base.values)] = base.fit.slopes
     residual = experiment.measured - predict(start)
-    if not _promises(whiten, base, np.where(np.isnan(residual), base.fit.residual, residual), slopes):
+    residual = np.where(np.isnan(residual), base.fit.residual, residual)
+    enough = least if make(effect).costly else -math.inf
+    if not _promises(whiten, base, residual, slopes, enough):
+        chi2 = float((whiten(np.nan_to_num(residual)) ** 2).sum())
+        if chi2 < base.fit.chi2:
+            return Fitted(model, Fit(start, residual, slopes, chi2))
         neutral = np.append(base.values, [p.neutral for p in make(effect).parameters])
         return Fitted(model, Fit(neutral, base.fit.residual, slopes, base.fit.chi2))
     return Fitted(model, fit(predict, experiment.measured, whiten, start, model.steps, low, high, slopes))
 
 
-def _promises(whiten: Whiten, base: Fitted, residual: np.ndarray, slopes: np.ndarray) -> bool:
-    """Whether a fit could gain enough to be worth its drapes, by what its slopes promise."""
+def _promises(whiten: Whiten, base: Fitted, residual: np.ndarray, slopes: np.ndarray, least: float) -> bool:
+    """Whether a fit could gain enough to be worth its drapes, by what its slopes promise.
+
+    Slopes promise too little where the model is curved: HOPELESS is far from the chi-square ``least`` of the best.
+    """
     before = square_beside(whiten(np.nan_to_num(base.fit.residual)), whiten(base.fit.slopes))
     after = square_beside(whiten(np.nan_to_num(residual)), whiten(slopes))
+    if after - least > HOPELESS * (before - least):
+        return False
     return before - after > max(PROMISE * max(before - len(residual), 0.0), LEAST_PROMISE)
 
 

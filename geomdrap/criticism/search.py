@@ -12,6 +12,7 @@ from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.holdout import blocks_of, held_out_error
 from geomdrap.criticism.likelihood import Judge, Residuals, Scatter, deviations
 from geomdrap.criticism.model import Fitted, Whiten, add_effect
+from geomdrap.effects import make
 
 CLEAR = 3.0  # standard deviations from nothing
 CLIMB = 3  # models for which the likeliest scatter is searched: the base and the best two
@@ -45,9 +46,11 @@ def try_effects(
 ) -> Round:
     """Fit every effect on top of the base, and weigh what speaks for it. ``done`` is told each name."""
     trials, failed = [], []
-    for name in names:
+    least = base.fit.chi2
+    for name in sorted(names, key=lambda name: make(name).costly):
         done(name)
-        trial = add_effect(experiment, whiten, base, name)
+        trial = add_effect(experiment, whiten, base, name, least)
+        least = min(least, trial.fit.chi2)
         if _predicts(trial):
             trials.append(trial)
         else:

@@ -1,0 +1,46 @@
+"""Shear that stops: the mark of a locked fabric, whichever of its many states the ply is in.
+
+Where yarns lock, whole families of nets have nearly the same energy, and friction holds the ply in any of them. No model
+foretells which, so positions stay off; but in all of them shear stops at one angle, however much more the geometric net
+would shear. No other effect of the library does that: all of them shear more where the geometric net shears more.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+TOP = 0.95  # quantile of the measured shear that is taken for the plateau
+CLEAR = 4.0  # noises by which the model must exceed the plateau for a point to count
+LEAST_POINTS = 8
+ABOVE = 3.0  # noises that measured shear may lie above the plateau
+SHARE_BELOW = 0.95  # of those points: must not exceed it
+STEEP = 0.25  # slope of measured against predicted shear on the plateau: more is no plateau
+
+
+@dataclass(frozen=True)
+class Plateau:
+    """Shear stops at ``angle`` degrees (standard deviation ``sigma``)."""
+
+    angle: float
+    sigma: float
+
+
+def plateau(measured: np.ndarray, predicted: np.ndarray, noise: float) -> Plateau | None:
+    """The plateau of measured shear (n,) where the geometric net predicts more (n,), degrees; None if there is none."""
+    known = np.isfinite(measured) & np.isfinite(predicted)
+    found, model = np.abs(measured[known]), np.abs(predicted[known])
+    if len(found) < LEAST_POINTS:
+        return None
+    top = float(np.quantile(found, TOP))
+    over = model > top + CLEAR * noise
+    if over.sum() < LEAST_POINTS or np.mean(found[over] <= top + ABOVE * noise) < SHARE_BELOW:
+        return None
+    spread = model[over] - model[over].mean()
+    slope = float(spread @ found[over] / max(spread @ spread, 1e-12))
+    crowded = np.mean(np.abs(found - top) < 2.0 * noise) > np.mean(np.abs(model - top) < 2.0 * noise)
+    if abs(slope) > STEEP or not crowded:
+        return None
+    angle = float(np.median(found[over]))
+    return Plateau(angle, max(float(np.std(found[over])) / np.sqrt(float(over.sum())), 0.5 * noise))
