@@ -22,6 +22,7 @@ class Status(IntEnum):
     BLANK = 8
     TOO_NARROW = 9
     TOO_SHEARED = 10
+    NEEDS_DART = 11
 
     @property
     def reason(self) -> str:
@@ -40,6 +41,7 @@ _REASONS = {
     Status.NOT_CLOSED: "no point of the surface closes the cell",
     Status.BLANK: "beyond the blank",
     Status.TOO_SHEARED: "sheared too far for the net to be carried on to the rim",
+    Status.NEEDS_DART: "folded: parts of the net lie on each other here, a dart or a cut is needed",
     Status.TOO_NARROW: "narrower than the pitch: use a smaller one",
 }
 
