@@ -20,7 +20,12 @@ def _sphere_table():
 
 def sphere_shear(u, v, radius):
     """Shear (nu, nv) in degrees on a sphere whose generators are great circles through the seed."""
-    s = np.outer(u, v) / radius**2
+    return sphere_shear_at(np.asarray(u)[:, None], np.asarray(v)[None, :], radius)
+
+
+def sphere_shear_at(u, v, radius):
+    """The same at fabric coordinates u and v of one shape, or shapes that numpy makes one."""
+    s = np.asarray(u) * np.asarray(v) / radius**2
     return np.sign(s) * _sphere_table()(np.abs(s))
 
 

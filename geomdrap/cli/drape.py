@@ -111,5 +111,5 @@ def compute(
     reach = (blank[0] / 2, blank[1] / 2) if blank else None
     net = gd.drape(surface, reach=reach, **drape_options)
     progress.step("Evaluating")
-    result: Drape = gd.evaluate(net, limit_angle)
+    result: Drape = gd.evaluate(net, limit_angle, progress.share)
     return result

@@ -13,17 +13,22 @@ import click
 
 PATIENCE = 1.0  # s before a step is worth mentioning
 _REDRAW = 0.1
+_TICK = 1.0  # s between two counts of a step that tells no share
 _WIDTH = 30
 
 
 class Progress:
-    """Steps of a run, shown as ``Draping [#####.....] 50 %`` once they take over a second."""
+    """Steps of a run, shown once they take over a second.
+
+    A step that tells its share is shown as ``Evaluating [#####.....] 50 %``, another one as ``Draping ... 3 s``.
+    """
 
     def __init__(self, quiet: bool = False):
         self.enabled = not quiet and sys.stderr.isatty()
         self._name = ""
         self._start = self._drawn_at = 0.0
         self._timer: threading.Timer | None = None
+        self._lock = threading.Lock()
         self._drawn = False
 
     def __enter__(self) -> Progress:
@@ -43,9 +48,7 @@ class Progress:
             return
         self._name = name
         self._start = time.monotonic()
-        self._timer = threading.Timer(PATIENCE, self._draw, (f"{name} ...",))
-        self._timer.daemon = True
-        self._timer.start()
+        self._count(PATIENCE)
 
     def share(self, done: float) -> None:
         """Take the share of the step that is done, 0 to 1. Cheap enough to be called often."""
@@ -55,6 +58,7 @@ class Progress:
         if now - self._start < PATIENCE or now - self._drawn_at < _REDRAW:
             return
         self._drawn_at = now
+        self._stop_counting()
         filled = round(_WIDTH * min(max(done, 0.0), 1.0))
         self._draw(f"{self._name} [{'#' * filled}{'.' * (_WIDTH - filled)}] {100 * done:3.0f} %")
 
@@ -63,10 +67,27 @@ class Progress:
         sys.stderr.write(f"\r\x1b[K{text}")  # not click.echo: it drops control codes by its own rules
         sys.stderr.flush()
 
+    def _count(self, wait: float) -> None:
+        """Show the seconds that the step has taken, after a while and then again and again."""
+        timer = threading.Timer(wait, self._tick)
+        timer.daemon = True
+        self._timer = timer
+        timer.start()
+
+    def _tick(self) -> None:
+        with self._lock:
+            if self._timer is threading.current_thread():  # else the step has ended or tells its share
+                self._draw(f"{self._name} ... {time.monotonic() - self._start:.0f} s")
+                self._count(_TICK)
+
+    def _stop_counting(self) -> None:
+        with self._lock:
+            if self._timer is not None:
+                self._timer.cancel()
+                self._timer = None
+
     def _end_step(self) -> None:
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None
+        self._stop_counting()
         if self._drawn:
             self._draw("")
             self._drawn = False

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from geomdrap.surface.surface import Surface
 
 Floats = NDArray[np.float64]
@@ -39,7 +41,8 @@ class Camera:
 
     def project(self, points: Floats) -> Floats:
         """(…, 3) mm on the picture: to the right, up, and towards the viewer."""
-        return np.asarray(points @ np.stack([self.right, self.up, self.toward], axis=1))
+        axes = np.stack([self.right, self.up, self.toward], axis=1)
+        return np.asarray(np.einsum("...i,ij->...j", points, axes))  # threads of BLAS cost more than they bring here
 
     @property
     def name(self) -> str:
@@ -106,11 +109,18 @@ def oblique_directions() -> list[Floats]:
     return directions
 
 
-def two_views(surface: Surface, importance: Floats, origin: Floats, normal: Floats) -> tuple[Camera, Camera]:
+def two_views(
+    surface: Surface,
+    importance: Floats,
+    origin: Floats,
+    normal: Floats,
+    progress: Callable[[float], None] = lambda _: None,
+) -> tuple[Camera, Camera]:
     """The most informative oblique view of a part, and the view that adds most to it.
 
     importance (m,) is what it is worth to see a face squarely, per mm²; origin (3,) mm and normal (3,) there.
-    Judged on samples of the part with the part's own occlusion; a face seen from its back counts less.
+    Judged on samples of the part with the part's own occlusion; a face seen from its back counts less. ``progress``
+    is called with the share done, 0 to 1.
     """
     faces = sample_faces(surface.areas)
     worth = importance[faces]
@@ -119,12 +129,13 @@ def two_views(surface: Surface, importance: Floats, origin: Floats, normal: Floa
     worth = np.append(worth, 0.08 * worth.sum())  # the first view should show the origin
     normals = np.vstack([surface.normals[faces], normal[None]])
     oblique = [Camera.looking_from(direction) for direction in oblique_directions()]
-    seen = [squareness(surface, camera, points, normals) for camera in oblique]
+    cameras = oblique + [Camera.looking_from(direction) for direction in AXES]
+    seen = []
+    for n, camera in enumerate(cameras, start=1):
+        seen.append(squareness(surface, camera, points, normals))
+        progress(n / len(cameras))
     preference = 1.0 - 0.002 * np.arange(len(oblique))
-    first = int(np.argmax([worth @ s * p for s, p in zip(seen, preference, strict=True)]))
-    axial = [Camera.looking_from(direction) for direction in AXES]
-    cameras = oblique + axial
-    seen += [squareness(surface, camera, points, normals) for camera in axial]
+    first = int(np.argmax([worth @ s * p for s, p in zip(seen, preference, strict=False)]))
     gains = [worth @ np.maximum(s - seen[first], 0.0) for s in seen]
     return cameras[first], cameras[int(np.argmax(gains))]
 

@@ -20,6 +20,8 @@ from geomdrap.export.whole import write_whole
 from geomdrap.export.yarns import choose_yarns, every_so_many
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from geomdrap.fields import Drape
 
 Floats = NDArray[np.float64]
@@ -42,23 +44,26 @@ ARROW = 0.62
 """Length of the rosette's arrows, inch; less where the picture is small."""
 
 
-def write(result: Drape, path: Path) -> None:
-    """Write the picture of a drape as a PNG; no date or path in it. Raises GeomdrapError if it cannot be."""
+def write(result: Drape, path: Path, progress: Callable[[float], None] = lambda _: None) -> None:
+    """Write the picture of a drape as a PNG; no date or path in it. Raises GeomdrapError if it cannot be.
+
+    ``progress`` is called with the share done, 0 to 1.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    figure = draw(result)
+    figure = draw(result, lambda share: progress(0.9 * share))
     buffer = io.BytesIO()
     FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None}, pil_kwargs={"compress_level": 4})
     write_whole(path, buffer.getvalue())
 
 
-def draw(result: Drape) -> Any:
+def draw(result: Drape, progress: Callable[[float], None] = lambda _: None) -> Any:
     """The picture as a matplotlib Figure: header, two views and the flat map, legend, warnings."""
     from matplotlib.figure import Figure
 
     surface, net = result.net.surface, result.net
     importance = 0.35 + np.nan_to_num(np.abs(result.face_shear)) / result.limit_angle
-    views = two_views(surface, importance, net.origin, net.normal0)
+    views = two_views(surface, importance, net.origin, net.normal0, lambda share: progress(0.5 * share))
     panels = [Panel(proportions(*extent(view, surface.points)), AROUND_VIEW, LEAST_WIDTH) for view in views]
     panels.append(Panel(proportions(*pattern_extent(result.flat)), AROUND_MAP, LEAST_WIDTH))
     footer = footer_height(result)
@@ -68,8 +73,9 @@ def draw(result: Drape) -> Any:
     top = palette.top_of_scale(result.statistics.max, result.limit_angle)
     draw_header(figure, result, MARGIN)
     skin = prepare_skin(surface, result.face_shear)
-    for box, view in zip(boxes, views, strict=False):
+    for n, (box, view) in enumerate(zip(boxes, views, strict=False), start=1):
         draw_view(figure, box, result, skin, camera=view, top=top)
+        progress(0.5 + 0.2 * n)
     draw_pattern(figure, boxes[2], result)
     draw_footer(figure, result, top, MARGIN)
     return figure

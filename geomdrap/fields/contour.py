@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -9,6 +11,7 @@ import numpy as np
 from geomdrap.geodesic.compiled import kernel
 
 SAME = 0.1  # cells: corners that agree this closely across an edge are joined in the flat fabric, not cut apart
+TOUCH = 1e-6  # mm or cells: a point this close to a line lies on it
 
 
 @kernel
@@ -106,9 +109,9 @@ def simplify(polygon: np.ndarray, tolerance: float) -> np.ndarray:
 
 
 @kernel
-def count_crossings(a: np.ndarray, b: np.ndarray) -> int:
-    """Number of pairs of segments a → b (n, 2) that cross each other properly."""
-    count = 0
+def find_crossings(a: np.ndarray, b: np.ndarray) -> tuple[int, int]:
+    """Number of pairs of segments a → b (n, 2) that cross each other properly, and one of such a pair (or -1)."""
+    count, where = 0, -1
     for i in range(len(a)):
         low_x, high_x = min(a[i, 0], b[i, 0]), max(a[i, 0], b[i, 0])
         low_y, high_y = min(a[i, 1], b[i, 1]), max(a[i, 1], b[i, 1])
@@ -117,9 +120,16 @@ def count_crossings(a: np.ndarray, b: np.ndarray) -> int:
                 continue
             if min(a[j, 1], b[j, 1]) > high_y or max(a[j, 1], b[j, 1]) < low_y:
                 continue
-            if turns(a[i], b[i], a[j]) * turns(a[i], b[i], b[j]) < 0.0:
-                count += turns(a[j], b[j], a[i]) * turns(a[j], b[j], b[i]) < 0.0
-    return count
+            if parts(a[i], b[i], a[j], b[j]) and parts(a[j], b[j], a[i], b[i]):
+                count, where = count + 1, i
+    return count, where
+
+
+@kernel
+def parts(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> bool:
+    """Whether the line through p and q parts the points r and s (2,), neither of which touches it."""
+    first, second = turns(p, q, r), turns(p, q, s)
+    return first * second < 0.0 and min(abs(first), abs(second)) > TOUCH * math.hypot(q[0] - p[0], q[1] - p[1])
 
 
 @kernel
@@ -128,9 +138,35 @@ def turns(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> float:
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
 
 
-def self_crossings(polygons: tuple[np.ndarray, ...]) -> int:
-    """How often closed polygons (k, 2) cross themselves and each other."""
-    if not polygons:
-        return 0
-    ends = [np.roll(p, -1, axis=0) for p in polygons]
-    return int(count_crossings(np.concatenate(polygons), np.concatenate(ends)))
+def self_crossings(polygons: Sequence[np.ndarray]) -> tuple[int, np.ndarray]:
+    """How often closed polygons (k, 2) cross themselves and each other, and a point (2,) near where one does."""
+    if not len(polygons):
+        return 0, np.full(2, np.nan)
+    starts, ends = np.concatenate(polygons), np.concatenate([np.roll(p, -1, axis=0) for p in polygons])
+    count, where = find_crossings(starts, ends)
+    return int(count), 0.5 * (starts[where] + ends[where]) if count else np.full(2, np.nan)
+
+
+def is_simple(polygons: Sequence[np.ndarray]) -> bool:
+    """Whether closed polygons (k, 2) bound a plane region once: none crosses, and they lie rightly in each other."""
+    if self_crossings(polygons)[0] > 0:
+        return False
+    # a corner may touch another polygon: asked is the middle of the longest side
+    around = [sum(winding(p, middle_of_longest(ring)) for p in polygons if p is not ring) for ring in polygons]
+    return all(n == (0 if signed_area(p) > 0.0 else 1) for n, p in zip(around, polygons, strict=True))
+
+
+def middle_of_longest(polygon: np.ndarray) -> np.ndarray:
+    """Middle (2,) of the longest side of a closed polygon (k, 2)."""
+    onward = np.roll(polygon, -1, axis=0)
+    k = np.hypot(*(onward - polygon).T).argmax()
+    return 0.5 * (polygon[k] + onward[k])
+
+
+def winding(polygon: np.ndarray, point: np.ndarray) -> int:
+    """How often a closed polygon (k, 2) goes counter-clockwise round a point (2,) that is not on it."""
+    a = polygon - point
+    b = np.roll(a, -1, axis=0)
+    up, down = (a[:, 1] <= 0.0) & (b[:, 1] > 0.0), (a[:, 1] > 0.0) & (b[:, 1] <= 0.0)
+    left = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return int((up & (left > 0.0)).sum() - (down & (left < 0.0)).sum())

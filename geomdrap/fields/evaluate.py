@@ -14,6 +14,8 @@ from geomdrap.fields.trim import Trimmed, trim
 from geomdrap.fishnet import Status
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from geomdrap.fishnet import Net
 
 MOST_RESIDUAL = 1.0  # degrees of curvature residual above which the pitch is called coarse
@@ -21,21 +23,28 @@ LEAST_FABRIC = 0.995  # of the draped area: sheared fabric covers less than its 
 LEAST_BARE = 1e-4  # of the part: smaller bare specks are counted in the coverage but not listed
 
 
-def evaluate(net: Net, limit_angle: float | None = None) -> Drape:
+def evaluate(
+    net: Net, limit_angle: float | None = None, progress: Callable[[float], None] = lambda _: None
+) -> Drape:
     """Fields, flat pattern, areas, bare regions, statistics and checks of a net.
 
-    ``limit_angle`` degrees; the fabric's own if None. Raises DrapeError for a limit angle out of range.
+    ``limit_angle`` degrees; the fabric's own if None. ``progress`` is called with the share done, 0 to 1.
+    Raises DrapeError for a limit angle out of range.
     """
     from dataclasses import replace
 
     limit = (
         net.fabric.limit_angle if limit_angle is None else replace(net.fabric, limit_angle=limit_angle).limit_angle
     )
-    trimmed = trim(net)
+    trimmed = trim(net, lambda share: progress(0.65 * share))
     warp, weft = unit_directions(trimmed)
     shear = np.degrees(np.arcsin(np.clip((warp * weft).sum(axis=1), -1.0, 1.0)))
     faces = _per_face(net, trimmed, warp, weft)
-    flat, checks = flat_pattern(net, trimmed, limit), check_net(net, trimmed)
+    progress(0.75)
+    flat = flat_pattern(net, trimmed, limit)
+    progress(0.85)
+    checks = check_net(net, trimmed)
+    progress(0.95)
     return Drape(
         net=net,
         limit_angle=limit,
@@ -52,11 +61,12 @@ def evaluate(net: Net, limit_angle: float | None = None) -> Drape:
 def doubts(flat: FlatPattern, checks: Checks, area: Areas) -> tuple[str, ...]:
     """Sentences on what of the result should not be trusted as it is."""
     found = []
-    crossings = self_crossings((*flat.outer, *flat.inner))
+    crossings, (u, v) = self_crossings((*flat.outer, *flat.inner))
     if crossings:
         found.append(
-            f"the flat pattern crosses itself in {crossings} places and cannot be cut like this: the fabric shears "
-            "too far or folds there; use another origin or heading, a smaller pitch, or plan a dart"
+            f"the flat pattern crosses itself in {crossings} places, as at u = {u:.1f}, v = {v:.1f} mm, and cannot "
+            "be cut like this: the fabric shears too far or folds there; use another origin or heading, a smaller "
+            "pitch, or plan a dart"
         )
     if checks.curvature_residual is not None and checks.curvature_residual > MOST_RESIDUAL:
         found.append(
@@ -147,7 +157,7 @@ def bare_regions(trimmed: Trimmed) -> tuple[BareRegion, ...]:
 
 
 def statistics(net: Net, trimmed: Trimmed, shear: np.ndarray, limit: float) -> ShearStatistics:
-    """Shear statistics: the largest of the cells, the rest weighted by area of the part."""
+    """Shear statistics: the largest of cells and facets, which reach out to the rim; the rest weighted by area."""
     on = trimmed.share > 0.0
     size, weight = np.abs(shear[on]), (trimmed.area * trimmed.share)[on]
     if not on.any() or not np.isfinite(net.cell_shear).any():
@@ -155,7 +165,7 @@ def statistics(net: Net, trimmed: Trimmed, shear: np.ndarray, limit: float) -> S
     order = np.argsort(size)
     cumulated = np.cumsum(weight[order]) / weight.sum()
     return ShearStatistics(
-        max=float(np.nanmax(np.abs(net.cell_shear))),
+        max=float(max(np.nanmax(np.abs(net.cell_shear)), size.max())),
         p95=float(size[order][min(np.searchsorted(cumulated, 0.95), len(order) - 1)]),
         mean=float((size * weight).sum() / weight.sum()),
         over_half_limit=float(weight[size > 0.5 * limit].sum() / weight.sum()),

@@ -30,22 +30,35 @@ def refine(
     Both facets of an edge split it at the same point, so no gap opens; a facet becomes 2, 3 or 4, in its own plane.
     """
     parent = np.arange(len(triangles))
-    whole = (points, triangles)
-    for _ in range(40):
-        edges = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2)
-        length = np.linalg.norm(points[edges[..., 0]] - points[edges[..., 1]], axis=2)
-        long = length > longest
-        if not long.any():
+    done: list[tuple[np.ndarray, np.ndarray]] = []  # facets without a long edge: none of their neighbours splits one
+    rest, owners = triangles, parent
+    while True:
+        long = _longer(points, rest, longest)
+        to_split = long.any(axis=1)
+        if not to_split.any():
             break
-        points, triangles, parent = _split(points, triangles, parent, edges, long)
-    if whole[1] is triangles:
+        done.append((rest[~to_split], owners[~to_split]))
+        rest, owners, long = rest[to_split], owners[to_split], long[to_split]
+        edges = np.sort(np.stack([rest, np.roll(rest, -1, axis=1)], axis=2), axis=2)
+        points, rest, owners = _split(points, rest, owners, edges, long)
+    if not done:
         return Refined(points, triangles, parent, neighbours, neighbour_edge)
     from geomdrap.surface.topology import match_edges, sorted_edges
 
-    triangles = np.ascontiguousarray(triangles.astype(np.int32))
+    parent = np.concatenate([*(p for _, p in done), owners])
+    triangles = np.ascontiguousarray(np.concatenate([*(t for t, _ in done), rest]).astype(np.int32))
     order, start = sorted_edges(triangles, len(points))
     beside, beside_edge, _ = match_edges(order, start, len(triangles))
     return Refined(points, triangles, parent, beside, beside_edge)
+
+
+def _longer(points: np.ndarray, triangles: np.ndarray, length: float) -> np.ndarray:
+    """Which edges (m, 3) of the facets are longer than ``length`` mm."""
+    square = np.zeros(triangles.shape)
+    for x in points.T:
+        corners = x[triangles]
+        square += (corners - corners[:, [1, 2, 0]]) ** 2
+    return square > length * length
 
 
 def _split(

@@ -55,7 +55,9 @@ class BareRegion:
 
 @dataclass(frozen=True)
 class ShearStatistics:
-    """Absolute shear over the draped area, degrees; shares 0..1 of that area over half the limit and over it."""
+    """Absolute shear over the draped area, out to its rim, degrees; shares 0..1 of that area over half the limit and
+    over it.
+    """
 
     max: float
     p95: float

@@ -1,10 +1,4 @@
-"""Fabric coordinates over the whole part: by the net where it is, by its yarn directions in the strip beyond.
-
-The net ends up to a cell before the rim of the part. In the strip between, facets continue the yarn directions and
-the shear of the facet before them, turned over the edge between the two: exact where the part can be unrolled, second
-order in the pitch elsewhere. Coordinates belong to the corners of facets, not to vertices, so that a net that meets
-itself may differ on the two sides of the seam.
-"""
+"""Fabric coordinates and yarn directions on the part where the net is; ``strip`` carries them on beyond it."""
 
 from __future__ import annotations
 
@@ -15,13 +9,7 @@ import numpy as np
 from geomdrap.fields.locate import locate
 from geomdrap.geodesic.compiled import inlined, kernel
 
-BARE, BY_NET, BEYOND = 0, 1, 2
 JUMP = 0.4  # cells: neighbouring values that differ by this much more than they can belong to two sheets
-IS_BLANK, IS_TOO_NARROW, IS_TOO_SHEARED = 8, 9, 10  # values of Status
-# flat area over area in the strip: 1 / cos(shear) up to 75°, and some room
-LEAST_STRETCH, MOST_STRETCH = 0.5, 4.0
-NEARLY_PARALLEL = 0.9  # sine of the shear, 64°
-BEYOND_NET = 2  # cells: corners of the part turned to the yarns stick out by more than one
 MOST_SHEARED = 12.0  # a cell sheared to 85° is that much shorter across than its sides
 
 
@@ -57,16 +45,6 @@ def stretch(points: np.ndarray, triangle: np.ndarray, at: np.ndarray, side: floa
     nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
     flat = (at[1, 0] - at[0, 0]) * (at[2, 1] - at[0, 1]) - (at[1, 1] - at[0, 1]) * (at[2, 0] - at[0, 0])
     return flat * side * side / math.sqrt(nx * nx + ny * ny + nz * nz)
-
-
-@kernel
-def can_be(ratio: float, tangent: np.ndarray) -> bool:
-    """Whether a facet of the strip can be flat area / area = ``ratio`` under yarns along ``tangent`` (2, 3).
-
-    Too large a ratio, or too small a one where the yarns are nearly parallel, makes the spikes in a pattern.
-    """
-    sine = (tangent[0] * tangent[1]).sum() / math.sqrt((tangent[0] ** 2).sum() * (tangent[1] ** 2).sum())
-    return ratio < MOST_STRETCH and (ratio > LEAST_STRETCH or abs(sine) < NEARLY_PARALLEL)
 
 
 @kernel
@@ -162,133 +140,3 @@ def tangents_at(p: float, q: float, yarns: np.ndarray, normal: np.ndarray, side:
         length = math.sqrt(out[n, 0] ** 2 + out[n, 1] ** 2 + out[n, 2] ** 2)
         for c in range(3):
             out[n, c] = out[n, c] * side / length if length > 0.0 else math.nan
-
-
-@kernel
-def turn_over_edge(
-    tangent: np.ndarray, edge: np.ndarray, normal: np.ndarray, beyond: np.ndarray, out: np.ndarray
-) -> None:
-    """Turn tangents (2, 3) of a facet about an edge into the plane of the facet beyond it."""
-    e = unit(edge)
-    here, there = np.cross(normal, e), np.cross(beyond, e)
-    for n in range(2):
-        out[n] = (tangent[n] * e).sum() * e + (tangent[n] * here).sum() * there
-
-
-@kernel
-def steps_of(tangent: np.ndarray, way: np.ndarray) -> tuple[float, float]:
-    """Components (cells) of a way in the plane of the tangents (2, 3), which are mm per cell."""
-    aa = (tangent[0] * tangent[0]).sum()
-    ab = (tangent[0] * tangent[1]).sum()
-    bb = (tangent[1] * tangent[1]).sum()
-    ar, br = (tangent[0] * way).sum(), (tangent[1] * way).sum()
-    det = aa * bb - ab * ab
-    if det <= 1e-9 * aa * bb:
-        return math.nan, math.nan
-    return (bb * ar - ab * br) / det, (aa * br - ab * ar) / det
-
-
-@kernel
-def why_not(valid: np.ndarray, status: np.ndarray, refused: np.ndarray, p: float, q: float) -> int:
-    """0 where the strip beyond the net may reach (p, q), else the status that stops it.
-
-    It may reach BEYOND_NET cells further than the net, but not past a fold. ``status`` (nu + 2, nv + 2) has a
-    frame of one node; ``refused`` (16,) says which statuses stop the strip.
-    """
-    if math.isnan(p) or math.isnan(q):
-        return IS_TOO_SHEARED
-    i, j = int(math.floor(p)), int(math.floor(q))
-    stop = IS_TOO_NARROW
-    for k in range(i, i + 2):
-        for m in range(j, j + 2):
-            s = status[min(max(k + 1, 0), status.shape[0] - 1), min(max(m + 1, 0), status.shape[1] - 1)]
-            if refused[s] and -1 <= k < status.shape[0] - 1 and -1 <= m < status.shape[1] - 1:
-                return s
-            if s == IS_BLANK:
-                stop = IS_BLANK
-    for k in range(max(i - BEYOND_NET, 0), min(i + BEYOND_NET + 1, valid.shape[0])):
-        for m in range(max(j - BEYOND_NET, 0), min(j + BEYOND_NET + 1, valid.shape[1])):
-            if valid[k, m]:
-                stop = 0
-    return stop
-
-
-@kernel
-def continue_beyond(
-    points: np.ndarray,
-    triangles: np.ndarray,
-    neighbours: np.ndarray,
-    neighbour_edge: np.ndarray,
-    normals: np.ndarray,
-    vertex_at: np.ndarray,
-    yarns: np.ndarray,
-    valid: np.ndarray,
-    status: np.ndarray,
-    refused: np.ndarray,
-    side: float,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Coordinates at the corners of all facets, in the net and in the strip beyond it.
-
-    Returns ``at`` (m, 3, 2) cells, ``kind`` (m,) BARE, BY_NET or BEYOND, ``tangent`` (m, 2, 3) mm per cell along warp
-    and weft in the facet's plane, and ``stopped`` (m,), the status that keeps a facet bare.
-    """
-    m = len(triangles)
-    at = np.full((m, 3, 2), np.nan)
-    kind = np.zeros(m, np.uint8)
-    stopped = np.zeros(m, np.uint8)
-    tangent = np.full((m, 2, 3), np.nan)
-    queue = np.empty(m, np.int64)
-    tail = 0
-    for f in range(m):
-        for k in range(3):
-            at[f, k] = vertex_at[triangles[f, k]]
-        p, q = (at[f, 0, 0] + at[f, 1, 0] + at[f, 2, 0]) / 3.0, (at[f, 0, 1] + at[f, 1, 1] + at[f, 2, 1]) / 3.0
-        if math.isnan(p) or not fits(points, triangles[f], at[f], side):
-            at[f] = np.nan
-            continue
-        tangents_at(p, q, yarns, normals[f], side, tangent[f])
-        if math.isnan(tangent[f, 0, 0] + tangent[f, 1, 0]):
-            at[f] = np.nan
-            continue
-        kind[f] = BY_NET
-        queue[tail] = f
-        tail += 1
-    head = 0
-    while head < tail:
-        f = queue[head]
-        head += 1
-        for k in range(3):
-            g = neighbours[f, k]
-            if g < 0 or kind[g] != BARE:
-                continue
-            e = neighbour_edge[f, k]
-            a, b = (k + 1) % 3, k  # corners of f where corners e and e + 1 of g are
-            at[g, e], at[g, (e + 1) % 3] = at[f, a], at[f, b]
-            edge = points[triangles[f, a]] - points[triangles[f, b]]
-            turn_over_edge(tangent[f], edge, normals[f], normals[g], tangent[g])
-            o = (e + 2) % 3
-            third = points[triangles[g, o]]
-            p1, q1 = steps_of(tangent[g], third - points[triangles[g, e]])
-            p2, q2 = steps_of(tangent[g], third - points[triangles[g, (e + 1) % 3]])
-            p = 0.5 * (p1 + at[g, e, 0] + p2 + at[g, (e + 1) % 3, 0])
-            q = 0.5 * (q1 + at[g, e, 1] + q2 + at[g, (e + 1) % 3, 1])
-            known = vertex_at[triangles[g, o]]
-            if not math.isnan(known[0]) and abs(known[0] - p) < JUMP and abs(known[1] - q) < JUMP:
-                p, q = known[0], known[1]
-                stop = 0
-            else:
-                stop = why_not(valid, status, refused, p, q)
-            at[g, o, 0], at[g, o, 1] = p, q
-            if stop == 0 and not can_be(stretch(points, triangles[g], at[g], side), tangent[g]):
-                stop = IS_TOO_SHEARED
-            if stop != 0:
-                at[g] = np.nan
-                tangent[g] = np.nan
-                stopped[g] = stop
-                continue
-            if math.isnan(known[0]):
-                vertex_at[triangles[g, o], 0], vertex_at[triangles[g, o], 1] = p, q
-            kind[g] = BEYOND
-            queue[tail] = g
-            tail += 1
-    return at, kind, tangent, stopped

@@ -7,16 +7,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.fields.cuttable import make_cuttable
+from geomdrap.fields.gradient import bend_cells, complete_ends, shear_gradients
 from geomdrap.fields.pieces import require_few_pieces
 from geomdrap.fields.refine import Refined, refine
-from geomdrap.fields.spread import by_net, continue_beyond
+from geomdrap.fields.spread import by_net
+from geomdrap.fields.start import starts
+from geomdrap.fields.strip import continue_beyond
 from geomdrap.fishnet import Status
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from geomdrap.fishnet import Net
 
 FINE = 1.5  # cells: longest edge of a piece of a facet
-NEAR_PIECES = 8  # pieces of facets to look through for one that a node lies on
 REFUSED = np.zeros(16, np.bool_)
 REFUSED[[Status.FOLDED, Status.BEHIND_FOLD, Status.NOT_CLOSED]] = True
 
@@ -39,44 +44,46 @@ class Trimmed:
     reason: np.ndarray
 
 
-def trim(net: Net) -> Trimmed:
-    """Spread the net's fabric coordinates over the part, out to its rim or to the blank's."""
+def trim(net: Net, progress: Callable[[float], None] = lambda _: None) -> Trimmed:
+    """Spread the net's fabric coordinates over the part, out to its rim or to the blank's.
+
+    ``progress`` is called with the share done, 0 to 1.
+    """
     part = net.surface
     require_few_pieces(part, FINE * net.pitch)
     mesh = refine(part.points, part.triangles, part.neighbours, part.neighbour_edge, FINE * net.pitch)
-    cross = np.cross(
-        mesh.points[mesh.triangles[:, 1]] - mesh.points[mesh.triangles[:, 0]],
-        mesh.points[mesh.triangles[:, 2]] - mesh.points[mesh.triangles[:, 0]],
-    )
-    area = 0.5 * np.linalg.norm(cross, axis=1)
-    m = len(area)
+    corners = mesh.points[mesh.triangles]
+    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     if min(net.lattice_valid.shape) == 0:
         return _all_bare(mesh, area, Status.TOO_NARROW)
-    starts, start_pq = _starts(net, mesh)
-    vertex_at = by_net(
-        mesh.points,
-        mesh.triangles,
-        mesh.neighbours,
-        net.lattice,
-        net.lattice_valid,
-        starts,
-        start_pq,
-        net.pitch,
-    )
-    at, kind, tangent, stopped = continue_beyond(
-        mesh.points, mesh.triangles, mesh.neighbours, mesh.neighbour_edge, part.normals[mesh.parent],
-        vertex_at, net.yarns, net.lattice_valid, net.status_around, REFUSED, net.pitch,
-    )  # fmt: skip
-    at = np.array([net.u[0], net.v[0]]) + at * net.pitch
-    share = (kind > 0).astype(float)
+    progress(0.25)
+    cells, kind, tangent, stopped, reached = _spread(net, mesh)
+    progress(0.7)
+    cells += np.array([net.u[0], net.v[0]]) / net.pitch
+    cells, kind, stopped = make_cuttable(net, mesh, cells, kind, stopped, reached)
+    progress(0.9)
+    at, share = cells * net.pitch, (kind > 0).astype(float)
     reason = np.where(kind > 0, np.uint8(Status.PRESENT), np.where(stopped > 0, stopped, np.uint8(Status.UNREACHED)))
     if net.reach is not None:
         share *= _share_in_blank(at, net.reach)
         reason = np.where((kind > 0) & (share == 0.0), np.uint8(Status.BLANK), reason)
         kind = np.where(share > 0.0, kind, 0).astype(np.uint8)
-    reason = _spread_reasons(reason, mesh.neighbours, net)
-    assert len(reason) == m
-    return Trimmed(mesh, at, kind, tangent / net.pitch, area, share, reason)
+    at[kind == 0], tangent[kind == 0] = np.nan, np.nan
+    return Trimmed(mesh, at, kind, tangent / net.pitch, area, share, _spread_reasons(reason, mesh.neighbours, net))
+
+
+def _spread(net: Net, mesh: Refined) -> tuple[np.ndarray, ...]:
+    """Coordinates in cells from the first node, kinds, tangents, what stops: see ``continue_beyond``."""
+    points, triangles, neighbours = mesh.points, mesh.triangles, mesh.neighbours
+    lattice, valid, side = net.lattice, net.lattice_valid, net.pitch
+    vertex_at = by_net(points, triangles, neighbours, lattice, valid, *starts(net, mesh), side)
+    gradient = shear_gradients(np.radians(net.cell_shear))
+    yarns = complete_ends(net.yarns, valid, gradient)
+    bend_cells(vertex_at, yarns, gradient)
+    return continue_beyond(
+        points, triangles, neighbours, mesh.neighbour_edge, net.surface.normals[mesh.parent],
+        vertex_at, yarns, gradient, valid, net.status_around, REFUSED, side,
+    )  # fmt: skip
 
 
 def _all_bare(mesh: Refined, area: np.ndarray, why: Status) -> Trimmed:
@@ -85,24 +92,6 @@ def _all_bare(mesh: Refined, area: np.ndarray, why: Status) -> Trimmed:
         mesh, np.full((m, 3, 2), np.nan), np.zeros(m, np.uint8), np.full((m, 2, 3), np.nan), area, np.zeros(m),
         np.full(m, np.uint8(why)),
     )  # fmt: skip
-
-
-def _starts(net: Net, mesh: Refined) -> tuple[np.ndarray, np.ndarray]:
-    """Facets of nodes and their coordinates in cells, the seed's first, from which the walks begin."""
-    i, j = np.nonzero(net.face >= 0)
-    nearest_first = np.argsort(np.hypot(net.u[i], net.v[j]), kind="stable")
-    i, j = i[nearest_first], j[nearest_first]
-    faces = net.face[i, j]
-    if len(mesh.parent) == len(net.surface.triangles):
-        return faces.astype(np.int64), np.column_stack([i, j]).astype(float)
-    from scipy.spatial import cKDTree
-
-    # the nearest pieces may belong to the other sheet of a thin wall: only those of the node's own facet count
-    middle = mesh.points[mesh.triangles].mean(axis=1)
-    near = cKDTree(middle).query(net.points[i, j], k=min(NEAR_PIECES, len(middle)))[1].reshape(len(faces), -1)
-    own = mesh.parent[near] == faces[:, None]
-    rows = np.flatnonzero(own.any(axis=1))
-    return near[rows, own[rows].argmax(axis=1)].astype(np.int64), np.column_stack([i, j])[rows].astype(float)
 
 
 def _share_in_blank(at: np.ndarray, reach: tuple[float, float]) -> np.ndarray:
@@ -116,7 +105,7 @@ def _share_in_blank(at: np.ndarray, reach: tuple[float, float]) -> np.ndarray:
     for f in np.flatnonzero(~inside & (least[:, 0] < reach[0]) & (least[:, 1] < reach[1])):
         cut = clip_to_rectangle(at[f], reach)
         whole = signed_area(at[f])
-        share[f] = signed_area(cut) / whole if len(cut) and whole > 0.0 else 0.0
+        share[f] = signed_area(cut) / whole if len(cut) and whole != 0.0 else 0.0
     return share
 
 

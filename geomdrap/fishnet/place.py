@@ -22,7 +22,7 @@ from geomdrap.geodesic.mesh import Mesh, in_space, normal_of
 PRESENT = 1
 OFF_PART = 2
 MEETS_ITSELF = 6
-NEEDS_DART = 11
+NEEDS_DART = 13
 WARP_PIECE = 1
 WEFT_PIECE = 2
 

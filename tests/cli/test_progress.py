@@ -59,6 +59,19 @@ def test_a_slow_step_shows_its_name_and_share_and_is_wiped_away(monkeypatch: pyt
     assert screen.getvalue().endswith("\r\x1b[K")
 
 
+def test_a_step_without_shares_counts_its_seconds_and_no_longer_than_it_lasts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(progress, "_TICK", 0.02)
+    with _terminal(monkeypatch, patience=0.01) as screen, Progress() as steps:
+        steps.step("Draping")
+        time.sleep(0.2)
+        steps.step("Evaluating")
+        drawn = screen.getvalue()
+        assert drawn.count("Draping ... 0 s") > 2
+        steps.share(0.5)
+        time.sleep(0.1)
+    assert "Draping" not in screen.getvalue()[len(drawn) :]
+
+
 def test_quiet_shows_nothing_even_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     with _terminal(monkeypatch, patience=0.0) as screen, Progress(quiet=True) as steps:
         steps.step("Draping")
@@ -96,3 +109,20 @@ def test_kernels_of_another_python_do_not_count(tmp_path: Path, monkeypatch: pyt
     (tmp_path / "fishnet_0a1b").mkdir()
     (tmp_path / "fishnet_0a1b" / "march.walk-1.py27.nbi").touch()
     assert not kernels_are_compiled()
+
+
+def test_evaluating_and_writing_tell_their_shares_in_small_steps(tmp_path: Path) -> None:
+    import geomdrap as gd
+    from geomdrap.export.outputs import write_all
+    from geomdrap.surface import shapes
+
+    evaluating: list[float] = []
+    writing: list[float] = []
+    net = gd.drape(shapes.sphere_cap(100.0, 50.0, 8.0), "centroid", 20.0, 8.0)
+    result = gd.evaluate(net, progress=evaluating.append)
+    write_all(result, tmp_path / "all", progress=writing.append)
+    for shares in (evaluating, writing):
+        assert shares == sorted(shares)
+        steps = [b - a for a, b in zip([0.0, *shares], [*shares, 1.0], strict=True)]
+        assert max(steps) < 0.35
+    assert writing[-1] == pytest.approx(1.0)

@@ -5,7 +5,7 @@ import pytest
 from made_parts import cube, plate_with_holes, square_tube
 
 import geomdrap as gd
-from geomdrap.fields.contour import signed_area
+from geomdrap.fields.contour import is_simple, signed_area
 from geomdrap.surface import Surface, shapes
 
 TWO_TRIANGLES = Surface([[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]], [[0, 1, 2], [0, 2, 3]])
@@ -117,21 +117,20 @@ def test_a_closed_sphere_is_not_covered_twice():
 
 
 def test_a_cube_is_draped_to_its_darts_and_no_more():
-    area = draped(cube(), (3.0, 7.0, 30.0), 20.0, 4.0).area
-    assert 0.9 < area.coverage <= 1.0
-    assert area.fabric < 1.1 * area.draped
+    result = draped(cube(), (3.0, 7.0, 30.0), 20.0, 4.0)
+    assert 0.8 < result.area.coverage <= 1.0  # behind a corner that takes 90 degrees a ply needs a dart: bare
+    assert result.area.fabric < 1.1 * result.area.draped
+    assert is_simple((*result.flat.outer, *result.flat.inner))
 
 
 @pytest.mark.parametrize("part", ["cap", "saddle"])
 def test_the_fabric_area_is_second_order_in_the_pitch(part):
     surface = shapes.sphere_cap(100.0, 60.0, 2.0) if part == "cap" else shapes.saddle(200.0, 240.0, 2.0)
     starts = [((7.0, -11.0, 98.0), 13.0), ((20.0, 5.0, 96.0), 50.0), ((-15.0, 22.0, 96.0), 75.0)]
-    pitches = np.array([20.0, 10.0, 5.0])
+    pitches = np.array([20.0, 10.0, 5.0, 2.5])
     errors = []
     for origin, angle in starts:
-        area = [draped(surface, origin, angle, p, project=True).area.fabric for p in (*pitches, 1.7)]
+        area = [draped(surface, origin, angle, p, project=True).area.fabric for p in (*pitches, 1.7)]  # finer than 2 mm, the facets show
         errors.append(np.array(area[:-1]) / area[-1] - 1.0)
     rms = np.sqrt(np.mean(np.square(errors), axis=0))
-    order = np.polyfit(np.log(pitches), np.log(rms), 1)[0]
-    assert order > 1.7
-    assert rms[-1] < 3e-4
+    assert (rms < 0.03 * (pitches / 100.0) ** 2).all()  # the radius of the cap is 100 mm

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from made_parts import square_tube
 
 import geomdrap as gd
+from geomdrap.fields.contour import is_simple
 from geomdrap.fields.trim import trim
 from geomdrap.fishnet import Status
 from geomdrap.surface import Surface, samples, shapes
@@ -61,6 +63,28 @@ def test_a_cone_too_steep_for_a_ply_opens_in_a_slit_behind_its_tip():
     assert (net.status == Status.BEHIND_FOLD).sum() > 50
     assert result.area.fabric < 0.99 * 200.0**2  # what would lie behind the tip is not counted
     assert result.area.fabric == pytest.approx(result.area.draped, rel=5e-3)
+
+
+@pytest.mark.parametrize("seed", [(-30.0, -24.0, 0.0), (-50.0, -41.0, 0.0)])
+@pytest.mark.parametrize("angle", [0.0, 20.0])
+def test_the_slit_behind_the_tip_of_a_steep_cone_is_bare_and_calls_for_a_dart(seed, angle):
+    result = gd.evaluate(gd.drape(shapes.cone(1.0, 150.0, 3.0), seed, angle, 3.0, project=True))
+    slit = result.bare[0]
+    assert slit.reason == Status.SLIT.reason
+    assert "dart" in slit.reason
+    assert slit.center[:2] @ seed[:2] < 0.0  # on the other side of the tip
+    slant = 150.0 * np.sqrt(2.0)
+    assert 0.8 * slant < slit.area / 3.0 < 4.0 * slant  # from about the tip to the rim, one to four cells wide
+    assert result.area.coverage < 0.995
+    assert is_simple((*result.flat.outer, *result.flat.inner))
+
+
+@pytest.mark.parametrize("angle", [0.0, 30.0, 45.0])
+def test_the_seam_of_a_tube_is_no_slit(angle):
+    for part in (square_tube(), shapes.cylinder(25.0, 200.0, 4.0)):
+        result = gd.evaluate(gd.drape(part, part.points[0], angle, 4.0))
+        assert Status.SLIT.reason not in {b.reason for b in result.bare}
+        assert result.area.coverage > 0.999
 
 
 def test_a_part_on_which_no_cell_closes_is_refused_and_says_what_to_do():

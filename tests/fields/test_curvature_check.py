@@ -38,7 +38,7 @@ def test_the_shear_is_the_curvature_within_a_tenth_of_a_degree_and_of_second_ord
     if name != "cone beside its tip":  # all of its curvature is in one point: within a cell of it there is no order
         twice, four_times = (residual(part, origin, k * pitch) for k in (2.0, 4.0))
         assert fine <= max(twice / 2.8, MESH)
-        assert twice <= max(four_times / 2.8, MESH)
+        assert twice <= max(four_times / 2.7, MESH)  # coarse against the radii: on the way to second order
 
 
 @pytest.mark.parametrize("name", ["sphere cap", "saddle", "cylinder"])

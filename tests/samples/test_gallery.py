@@ -31,7 +31,8 @@ def test_both_parts_are_draped_all_over_at_both_angles(results, name, angle):
 
 
 def test_the_hood_shears_more_at_45_than_at_0_as_in_the_paper(results):
-    straight, bias = (results["hood"][angle].statistics.max for angle in (0.0, 45.0))
+    # of the cells, as there: the facets at the rim, where it is greatest, shear up to 40 and 54 degrees
+    straight, bias = (np.nanmax(np.abs(results["hood"][angle].net.cell_shear)) for angle in (0.0, 45.0))
     assert 20.0 < straight < 40.0  # the paper: about 30
     assert 40.0 < bias < 60.0  # the paper: about 50
 

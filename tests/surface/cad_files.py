@@ -1,6 +1,8 @@
-"""The smallest STEP and IGES files that hold a face: a flat rectangle in the plane z = 0."""
+"""STEP and IGES files made of text: flat facets and bilinear patches, from one rectangle to thousands."""
 
 from __future__ import annotations
+
+import numpy as np
 
 STEP_UNITS = {
     "mm": "(LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.METRE.))",
@@ -10,34 +12,50 @@ IGES_UNITS = {"in": (1, "IN"), "mm": (2, "MM"), "m": (6, "M")}
 
 
 def step_rectangle(length: float, width: float, unit: str = "mm") -> str:
-    """STEP AP214 text of a rectangle; lengths in the unit."""
-    corners = [(0, 0), (length, 0), (length, width), (0, width)]
+    """STEP AP214 text of a rectangle in the plane z = 0; lengths in the unit."""
+    corners = [(0, 0, 0), (length, 0, 0), (length, width, 0), (0, width, 0)]
+    return step_facets(np.array(corners, float), [(0, 1, 2, 3)], unit)
+
+
+def step_facets(points: np.ndarray, facets: list[tuple[int, ...]], unit: str = "mm") -> str:
+    """STEP AP214 text of flat facets (corner numbers, counter-clockwise) that share edges; lengths in the unit."""
     rows: list[str] = []
 
     def add(text: str) -> str:
         rows.append(f"#{len(rows) + 1}={text};")
         return f"#{len(rows)}"
 
-    def point(x: float, y: float) -> str:
-        return add(f"CARTESIAN_POINT('',({float(x)!r},{float(y)!r},0.))")
+    def triple(v: np.ndarray) -> str:
+        return ",".join(repr(float(x)) for x in v)
 
-    def direction(x: float, y: float, z: float) -> str:
-        return add(f"DIRECTION('',({float(x)!r},{float(y)!r},{float(z)!r}))")
+    def point(v: np.ndarray) -> str:
+        return add(f"CARTESIAN_POINT('',({triple(v)}))")
 
-    placement = add(f"AXIS2_PLACEMENT_3D('',{point(0, 0)},{direction(0, 0, 1)},{direction(1, 0, 0)})")
-    vertices = [add(f"VERTEX_POINT('',{point(x, y)})") for x, y in corners]
-    edges = []
-    for i, (x, y) in enumerate(corners):
-        nx, ny = corners[(i + 1) % 4]
-        vector = add(f"VECTOR('',{direction(nx - x, ny - y, 0)},1.)")
-        line = add(f"LINE('',{point(x, y)},{vector})")
-        curve = add(f"EDGE_CURVE('',{vertices[i]},{vertices[(i + 1) % 4]},{line},.T.)")
-        edges.append(add(f"ORIENTED_EDGE('',*,*,{curve},.T.)"))
-    loop = add(f"EDGE_LOOP('',({','.join(edges)}))")
-    bound = add(f"FACE_OUTER_BOUND('',{loop},.T.)")
-    plane = add(f"PLANE('',{placement})")
-    face = add(f"ADVANCED_FACE('',({bound}),{plane},.T.)")
-    shell = add(f"OPEN_SHELL('',({face}))")
+    def direction(v: np.ndarray) -> str:
+        return add(f"DIRECTION('',({triple(v / np.linalg.norm(v))}))")
+
+    def placed(at: np.ndarray, normal: np.ndarray, along: np.ndarray) -> str:
+        return add(f"AXIS2_PLACEMENT_3D('',{point(at)},{direction(normal)},{direction(along)})")
+
+    placement = placed(*np.array([[0.0, 0, 0], [0, 0, 1], [1, 0, 0]]))
+    vertices = [add(f"VERTEX_POINT('',{point(v)})") for v in points]
+    edges: dict[tuple[int, int], str] = {}
+    faces = []
+    for facet in facets:
+        around = []
+        for a, b in zip(facet, (*facet[1:], facet[0]), strict=True):
+            low, high = min(a, b), max(a, b)
+            if (low, high) not in edges:
+                vector = add(f"VECTOR('',{direction(points[high] - points[low])},1.)")
+                line = add(f"LINE('',{point(points[low])},{vector})")
+                edges[low, high] = add(f"EDGE_CURVE('',{vertices[low]},{vertices[high]},{line},.T.)")
+            around.append(add(f"ORIENTED_EDGE('',*,*,{edges[low, high]},.{'T' if a < b else 'F'}.)"))
+        loop = add(f"EDGE_LOOP('',({','.join(around)}))")
+        bound = add(f"FACE_OUTER_BOUND('',{loop},.T.)")
+        a, b, c = (points[n] for n in facet[:3])
+        plane = add(f"PLANE('',{placed(a, np.cross(b - a, c - a), b - a)})")
+        faces.append(add(f"ADVANCED_FACE('',({bound}),{plane},.T.)"))
+    shell = add(f"OPEN_SHELL('',({','.join(faces)}))")
     model = add(f"SHELL_BASED_SURFACE_MODEL('',({shell}))")
     length_unit = add(STEP_UNITS[unit])
     angle_unit = add("(NAMED_UNIT(*) PLANE_ANGLE_UNIT() SI_UNIT($,.RADIAN.))")
@@ -78,26 +96,31 @@ def step_rectangle(length: float, width: float, unit: str = "mm") -> str:
 
 
 def iges_rectangle(length: float, width: float, unit: str = "mm") -> str:
-    """IGES 5.3 text of a rectangle as one bilinear B-spline surface (entity 128); lengths in the unit."""
+    """IGES 5.3 text of a rectangle in the plane z = 0 as one bilinear surface; lengths in the unit."""
+    return iges_patches(np.array([[[0, 0, 0], [length, 0, 0], [0, width, 0], [length, width, 0]]], float), unit)
+
+
+def iges_patches(corners: np.ndarray, unit: str = "mm") -> str:
+    """IGES 5.3 text of bilinear B-spline surfaces (entity 128), corners (k, 4, 3) at 00, 10, 01, 11; in the unit."""
     flag, name = IGES_UNITS[unit]
-    start = ["rectangle"]
-    numbers = "32,38,6,308,15"
     header = (
-        f"1H,,1H;,4Hpart,8Hpart.igs,4Hnone,4Hnone,{numbers},4Hpart,1.,{flag},{len(name)}H{name},1,0.01,"
+        f"1H,,1H;,4Hpart,8Hpart.igs,4Hnone,4Hnone,32,38,6,308,15,4Hpart,1.,{flag},{len(name)}H{name},1,0.01,"
         "15H20000101.000000,1.E-7,1000.,4Hnone,4Hnone,11,0,15H20000101.000000;"
     )
-    values = "128,1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.,"
-    values += f"0.,0.,0.,{float(length)},0.,0.,0.,{float(width)},0.,{float(length)},{float(width)},0.,"
-    values += "0.,1.,0.,1.;"
-    parameters = _wrapped(values, 64)
-    lines = [f"{text:<72}S{i:>7}" for i, text in enumerate(start, 1)]
     wrapped = _wrapped(header, 72)
-    lines += [f"{text:<72}G{i:>7}" for i, text in enumerate(wrapped, 1)]
-    lines.append("".join(f"{x:>8}" for x in (128, 1, 0, 0, 0, 0, 0, 0)) + "00000000" + f"D{1:>7}")
-    lines.append("".join(f"{x:>8}" for x in (128, 0, 0, len(parameters), 0, "", "", "", 0)) + f"D{2:>7}")
-    lines += [f"{text:<64}{1:>8}P{i:>7}" for i, text in enumerate(parameters, 1)]
-    lines.append(f"S{1:>7}G{len(wrapped):>7}D{2:>7}P{len(parameters):>7}".ljust(72) + f"T{1:>7}")
-    return "\n".join([*lines, ""])
+    lines = [f"{'patches':<72}S{1:>7}", *(f"{text:<72}G{i:>7}" for i, text in enumerate(wrapped, 1))]
+    entries: list[str] = []
+    parameters: list[str] = []
+    for n, patch in enumerate(corners):
+        values = "128,1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.,"
+        values += ",".join(repr(float(x)) for x in patch.ravel()) + ",0.,1.,0.,1.;"
+        rows = _wrapped(values, 64)
+        first = len(parameters) + 1
+        entries.append("".join(f"{x:>8}" for x in (128, first, 0, 0, 0, 0, 0, 0)) + "00000000" + f"D{2 * n + 1:>7}")
+        entries.append("".join(f"{x:>8}" for x in (128, 0, 0, len(rows), 0, "", "", "", 0)) + f"D{2 * n + 2:>7}")
+        parameters += [f"{text:<64}{2 * n + 1:>8}P{i:>7}" for i, text in enumerate(rows, first)]
+    counts = f"S{1:>7}G{len(wrapped):>7}D{len(entries):>7}P{len(parameters):>7}"
+    return "\n".join([*lines, *entries, *parameters, counts.ljust(72) + f"T{1:>7}", ""])
 
 
 def _wrapped(text: str, width: int) -> list[str]:
