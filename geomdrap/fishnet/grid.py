@@ -24,6 +24,7 @@ class Status(IntEnum):
     TOO_SHEARED = 10
     DOUBLED = 11
     SLIT = 12
+    NEEDS_DART = 13
 
     @property
     def reason(self) -> str:
@@ -44,6 +45,7 @@ _REASONS = {
     Status.TOO_SHEARED: "sheared too far for the net to be carried on to the rim",
     Status.DOUBLED: "would lie double in the flat pattern: a smaller pitch, or a dart, is needed",
     Status.SLIT: "fabric from two sides meets here: a dart is needed",
+    Status.NEEDS_DART: "folded: parts of the net lie on each other here, a dart or a cut is needed",
     Status.TOO_NARROW: "narrower than the pitch: use a smaller one",
 }
 

@@ -22,9 +22,8 @@ from geomdrap.geodesic.mesh import Mesh, in_space, normal_of
 
 PRESENT = 1
 OFF_PART = 2
-FOLDED = 4
-BEHIND_FOLD = 5
 MEETS_ITSELF = 6
+NEEDS_DART = 13
 WARP_PIECE = 1
 WEFT_PIECE = 2
 
@@ -56,9 +55,9 @@ def bucket_of(a: int, b: int, c: int, mask: int) -> int:
 def between(mesh: Mesh, grid: Grid, i: int, j: int, k: int, m: int, px: float, py: float, pz: float) -> int:
     """What lies straight between two nodes in the lattice: PRESENT where that is net near (px, py, pz) mm.
 
-    FOLDED where the net between them is squeezed together, or where they are near in the lattice and what lies
-    between them has no room on the part: they meet beyond the tip of a cone. BEHIND_FOLD where a fold parts them.
-    MEETS_ITSELF where the net leads away on its way from one to the other.
+    NEEDS_DART where the net between them is squeezed together, or where they are near in the lattice and what lies
+    between them is folded or has no room on the part: they meet beyond the tip of a cone. MEETS_ITSELF where the net
+    leads away on its way from one to the other.
     """
     di, dj = k - i, m - j
     steps = max(abs(di), abs(dj))
@@ -68,8 +67,6 @@ def between(mesh: Mesh, grid: Grid, i: int, j: int, k: int, m: int, px: float, p
         a = i + (1 if di > 0 else -1) * ((2 * n * abs(di) + steps) // (2 * steps))
         b = j + (1 if dj > 0 else -1) * ((2 * n * abs(dj) + steps) // (2 * steps))
         status = grid.marks[a, b, STATUS]
-        if steps <= NEAR_FOLD and status in (FOLDED, BEHIND_FOLD):
-            return BEHIND_FOLD
         torn = torn or status not in (PRESENT, OFF_PART)
         if one and status == PRESENT:
             qx, qy, qz = in_space(mesh.frames, grid.face[a, b] - 1, grid.node[a, b, 0], grid.node[a, b, 1])
@@ -77,10 +74,10 @@ def between(mesh: Mesh, grid: Grid, i: int, j: int, k: int, m: int, px: float, p
         else:
             one = False
     if torn and steps <= NEAR_FOLD:
-        return FOLDED
+        return NEEDS_DART
     if not one:
         return MEETS_ITSELF
-    return PRESENT if steps < SQUEEZED else FOLDED
+    return PRESENT if steps < SQUEEZED else NEEDS_DART
 
 
 @kernel

@@ -104,7 +104,7 @@ def test_a_cone_too_steep_for_a_ply_is_found_as_a_fold_from_any_seed():
         turn, away = rng.uniform(0.0, 2.0 * np.pi), rng.uniform(25.0, 90.0)
         seed = away * np.array([np.cos(turn), np.sin(turn), -1.0])
         net = gd.drape(surface, seed, rng.uniform(0.0, 360.0), 3.0, project=True)
-        assert (net.status == Status.FOLDED).any()
+        assert np.isin(net.status, [Status.FOLDED, Status.NEEDS_DART]).any()
 
 
 @pytest.mark.parametrize("seed", [(-50.0, -41.0, 0.0), (-60.0, -33.0, 0.0), (-30.0, -24.0, 0.0)])

@@ -118,7 +118,7 @@ def test_a_closed_sphere_is_not_covered_twice():
 
 def test_a_cube_is_draped_to_its_darts_and_no_more():
     result = draped(cube(), (3.0, 7.0, 30.0), 20.0, 4.0)
-    assert 0.88 < result.area.coverage <= 1.0  # at its corners, fabric would lie double
+    assert 0.8 < result.area.coverage <= 1.0  # behind a corner that takes 90 degrees a ply needs a dart: bare
     assert result.area.fabric < 1.1 * result.area.draped
     assert is_simple((*result.flat.outer, *result.flat.inner))
 
