@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from geomdrap.criticism import Comparison
 
 COMPARE_OUTPUTS = {
-    "json": Output("json", "compare.json", "geomdrap.export.compare_json"),
-    "csv": Output("csv", "residuals.csv", "geomdrap.export.compare_table"),
-    "vtu": Output("vtu", "residuals.vtu", "geomdrap.export.compare_vtu"),
-    "png": Output("png", "compare.png", "geomdrap.export.compare_picture"),
+    "json": Output("json", "compare.json", "geomdrap.export.compare_json", 0.1),
+    "csv": Output("csv", "residuals.csv", "geomdrap.export.compare_table", 0.1),
+    "vtu": Output("vtu", "residuals.vtu", "geomdrap.export.compare_vtu", 0.1),
+    "png": Output("png", "compare.png", "geomdrap.export.compare_picture", 0.7),
 }
 
 
