@@ -63,9 +63,7 @@ def disagreement(curves: list[Curve]) -> float:
     return float(np.nanmax(np.concatenate(apart))) if apart else float("nan")
 
 
-def _reasons(
-    fits: Mapping[str, Mapping[str, CurveFit]], winners: Mapping[str, str], apart: float
-) -> list[str]:
+def _reasons(fits: Mapping[str, Mapping[str, CurveFit]], winners: Mapping[str, str], apart: float) -> list[str]:
     said = []
     for series, name in winners.items():
         table = fits[series]

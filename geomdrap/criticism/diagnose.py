@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float, str], None]
 
-MOST_EFFECTS = 3
+MOST_EFFECTS = 2
 SHIFTED = 0.5  # mm: a seed that lies further off than this is named
 LOCKING = "locking"
 TURNED = 0.4  # degrees: likewise
@@ -82,7 +82,7 @@ def search(experiment: Experiment, names: Sequence[str], progress: Progress) -> 
         told = _teller(progress, len(rounds), len(left))
         rounds.append(try_effects(experiment, base, whiten, left, told))
         best = chosen(rounds)
-        if best is None or len(rounds) == MOST_EFFECTS:
+        if best is None or len(rounds) == MOST_EFFECTS or _locks(experiment, rounds[0]):
             return rounds
         base, scatter = rounds[-1].trial(best)
         if not left_over(experiment, base, scatter).structured:
@@ -133,8 +133,7 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         model = refit(experiment, judge_of(experiment, rows).whiten(scatter), model)
     left = left_over(experiment, model, scatter)
     alike = rivals(rounds[len(names) - 1].evidence) if names else ()
-    stop = shear_stops(experiment, rounds[0].base)
-    if stop is not None and left.structured and LOCKING in _possible(rounds[0]):
+    if left.structured and _locks(experiment, rounds[0]):
         names, alike = [LOCKING], (LOCKING,)
         model, scatter = rounds[0].trial(LOCKING)
         left = left_over(experiment, model, scatter)
@@ -167,9 +166,10 @@ def shear_stops(experiment: Experiment, base: Fitted) -> Plateau | None:
     return plateau(measured, predicted, float(np.median(experiment.noise[own])))
 
 
-def _possible(of: Round) -> tuple[str, ...]:
-    """Effects that explain a good share, far beyond chance."""
-    return tuple(e.name for e in of.evidence if e.p_family < FAMILY and e.share >= LEAST_SHARE)
+def _locks(experiment: Experiment, first: Round) -> bool:
+    """Whether the shear stops at an angle, and locking explains a good share of the misfit."""
+    possible = any(e.name == LOCKING and e.p_family < FAMILY and e.share >= LEAST_SHARE for e in first.evidence)
+    return possible and shear_stops(experiment, first.base) is not None
 
 
 def _failures(rounds: Sequence[Round]) -> tuple[str, ...]:

@@ -70,7 +70,9 @@ class Experiment:
         lay = self.layup
         pitch = pitch or self.pitches[0]
         surface, others = self._surface_under(effects)
-        return drape(surface, lay.origin, lay.angle, pitch, effects=others, reference=lay.reference, project=lay.project)
+        return drape(
+            surface, lay.origin, lay.angle, pitch, effects=others, reference=lay.reference, project=lay.project
+        )
 
     def _surface_under(self, effects: Sequence[Effect]) -> tuple[Surface, list[Effect]]:
         """The surface with the effects that act on it, made once for each of their values; and the other effects."""

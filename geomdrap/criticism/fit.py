@@ -40,11 +40,13 @@ def fit(
     low: np.ndarray,
     high: np.ndarray,
     slopes: np.ndarray | None = None,
+    most: int = STEPS,
 ) -> Fit:
     """Parameters (p,) between ``low`` and ``high`` with the least squares of ``whiten(measured - predict(p))``.
 
     ``predict`` gives (m,) values, NaN where it has none; those count as if they had kept their last residual.
-    ``steps`` (p,) are the differences with which slopes are taken, where ``slopes`` (m, p) are not given.
+    ``steps`` (p,) are the differences with which slopes are taken, where ``slopes`` (m, p) are not given. At
+    most ``most`` steps are tried.
     """
     values = np.clip(np.asarray(start, dtype=float), low, high)
     residual = measured - predict(values)
@@ -56,7 +58,7 @@ def fit(
     chi2 = _square(whiten(filled))
     damping = 0.0
     fresh = slopes is None
-    for _ in range(STEPS):
+    for _ in range(most):
         step = _step(whiten(jacobian), whiten(filled), damping, values, low, high)
         foreseen = chi2 - _square(whiten(filled - jacobian @ step))
         if (np.abs(step) <= LEAST_STEP * steps).all() or foreseen < SMALL:

@@ -161,7 +161,7 @@ class Judge:
 
 
 def largest_scatter(length: float) -> float:
-    """Largest scatter, mm, with a correlation length: the shear that it makes has a standard deviation √2·size/length."""
+    """Largest scatter, mm, with a correlation length; its shear has a standard deviation of √2·size/length."""
     return float(np.radians(TURNING)) * length / float(np.sqrt(2.0))
 
 

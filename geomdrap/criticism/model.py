@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.criticism.fit import Fit, fit, take_slopes
+from geomdrap.criticism.fit import STEPS, Fit, fit, take_slopes
 from geomdrap.criticism.likelihood import square_beside
 from geomdrap.effects import make
 from geomdrap.errors import GeomdrapError
@@ -22,9 +22,15 @@ if TYPE_CHECKING:
 Whiten = Callable[[np.ndarray], np.ndarray]
 
 STEP = 0.1  # of a parameter's typical size: the differences with which slopes are taken
-GROWING = (0.3, 1.0, 3.0, 8.0)  # times the typical size of a parameter that grows from 0: where the search looks first
+GROWING = (
+    0.3,
+    1.0,
+    3.0,
+    8.0,
+)  # times the typical size of a parameter that grows from 0: where the search looks first
 FALLING = (0.3, 0.6, 0.9, 1.2, 1.5)  # of the way from a parameter's greatest value to its typical one, likewise
 SHAPES = (0.05, 0.2, 0.4, 0.6)  # of the range of a parameter that does nothing alone
+FEW_STEPS = 7  # of a fit whose every drape is costly
 HALVINGS = 3  # of the gaps between probes
 SAME = 3.0  # of chi-square: probes this close do equally well
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
@@ -129,17 +135,18 @@ def fit_placement(experiment: Experiment, whiten: Whiten, start: np.ndarray | No
     )
 
 
-def add_effect(
-    experiment: Experiment, whiten: Whiten, base: Fitted, effect: str, least: float = -math.inf
-) -> Fitted:
+def add_effect(experiment: Experiment, whiten: Whiten, base: Fitted, effect: str, least: float = -math.inf) -> Fitted:
     """The base model with one effect more, fitted together with everything in the base.
 
     ``least`` is the chi-square of the best model known: a costly effect that promises to stay far above it is not
-    fitted to the end.
+    fitted to the end, and where nothing is left to explain it is tried at its typical size only.
     """
     model = base.model.with_effect(effect)
     predict = predictor(experiment, model)
-    start = _start(experiment, predict, whiten, base, effect)
+    if make(effect).costly and is_noise(least, len(experiment.measured)):
+        start = np.append(base.values, [p.typical for p in make(effect).parameters])
+    else:
+        start = _start(experiment, predict, whiten, base, effect)
     low, high = model.bounds
     # what the base already has keeps its slopes; the fit mends them where they mislead it
     own = slice(len(base.values), None)
@@ -154,7 +161,13 @@ def add_effect(
             return Fitted(model, Fit(start, residual, slopes, chi2))
         neutral = np.append(base.values, [p.neutral for p in make(effect).parameters])
         return Fitted(model, Fit(neutral, base.fit.residual, slopes, base.fit.chi2))
-    return Fitted(model, fit(predict, experiment.measured, whiten, start, model.steps, low, high, slopes))
+    most = FEW_STEPS if make(effect).costly else STEPS
+    return Fitted(model, fit(predict, experiment.measured, whiten, start, model.steps, low, high, slopes, most))
+
+
+def is_noise(chi2: float, values: int) -> bool:
+    """Whether a chi-square is what noise alone gives to so many values."""
+    return chi2 < values + 3.0 * math.sqrt(2.0 * values)
 
 
 def _promises(whiten: Whiten, base: Fitted, residual: np.ndarray, slopes: np.ndarray, least: float) -> bool:
@@ -214,9 +227,13 @@ def _start(
 
     if len(own) == 1:
         now = square_beside(whiten(residual), shifts)
-        best = np.array([_narrowed(lambda x: misfit(np.array([x])), _probes(own[0]), now)])
+        halvings = 1 if make(effect).costly else HALVINGS
+        best = np.array([_narrowed(lambda x: misfit(np.array([x])), _probes(own[0]), now, halvings)])
     else:
-        best = min((_scaled(shape, own, acting, signature, whiten, residual, shifts) for shape in _shapes(own, acting)), key=misfit)
+        best = min(
+            (_scaled(shape, own, acting, signature, whiten, residual, shifts) for shape in _shapes(own, acting)),
+            key=misfit,
+        )
     return _best_place(experiment, predict, whiten, base, best)
 
 
@@ -242,13 +259,13 @@ def _best_place(
     return min(starts, key=lambda start: start[0])[1]
 
 
-def _narrowed(misfit: Callable[[float], float], probes: Sequence[float], now: float) -> float:
+def _narrowed(misfit: Callable[[float], float], probes: Sequence[float], now: float, halvings: int) -> float:
     """The best of the probes; where none is better than ``now``, after halving the gaps beside the best.
 
     Of probes that do equally well the last is taken: an effect that does nothing up to a threshold begins there.
     """
     known = {x: misfit(x) for x in probes}
-    for _ in range(HALVINGS):
+    for _ in range(halvings):
         least = min(known.values())
         if least < now - SAME:
             break
@@ -256,7 +273,7 @@ def _narrowed(misfit: Callable[[float], float], probes: Sequence[float], now: fl
         order = sorted(known)
         k = order.index(best)
         for a, b in ((k, k + 1), (k - 1, k)):
-            if 0 <= a and b < len(order):
+            if a >= 0 and b < len(order):
                 middle = 0.5 * (order[a] + order[b])
                 known[middle] = misfit(middle)
     return min(known, key=lambda x: known[x])
@@ -270,9 +287,7 @@ def _probes(own: Parameter) -> list[float]:
 
 def _shapes(own: Sequence[Parameter], acting: Sequence[int]) -> list[np.ndarray]:
     """Values of the parameters that do nothing alone, over their ranges; the others at their typical sizes."""
-    each = [
-        [q.typical] if k in acting else [q.low + f * (q.high - q.low) for f in SHAPES] for k, q in enumerate(own)
-    ]
+    each = [[q.typical] if k in acting else [q.low + f * (q.high - q.low) for f in SHAPES] for k, q in enumerate(own)]
     return [np.array(values) for values in product(*each)]
 
 

@@ -1,8 +1,9 @@
 """Shear that stops: the mark of a locked fabric, whichever of its many states the ply is in.
 
-Where yarns lock, whole families of nets have nearly the same energy, and friction holds the ply in any of them. No model
-foretells which, so positions stay off; but in all of them shear stops at one angle, however much more the geometric net
-would shear. No other effect of the library does that: all of them shear more where the geometric net shears more.
+Where yarns lock, whole families of nets have nearly the same energy, and friction holds the ply in any of them. No
+model foretells which, so positions stay off; but in all of them shear stops at one angle, however much more the
+geometric net would shear. No other effect of the library does that: with all others the ply shears more where the
+geometric net does.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ class Plateau:
 
 
 def plateau(measured: np.ndarray, predicted: np.ndarray, noise: float) -> Plateau | None:
-    """The plateau of measured shear (n,) where the geometric net predicts more (n,), degrees; None if there is none."""
+    """The plateau of measured shear (n,) where a net predicts more (n,), degrees; None if there is none."""
     known = np.isfinite(measured) & np.isfinite(predicted)
     found, model = np.abs(measured[known]), np.abs(predicted[known])
     if len(found) < LEAST_POINTS:

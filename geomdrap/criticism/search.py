@@ -11,7 +11,7 @@ from geomdrap.criticism.evidence import Evidence, among_all, chance
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.holdout import blocks_of, held_out_error
 from geomdrap.criticism.likelihood import Judge, Residuals, Scatter, deviations
-from geomdrap.criticism.model import Fitted, Whiten, add_effect
+from geomdrap.criticism.model import Fitted, Whiten, add_effect, is_noise
 from geomdrap.effects import make
 
 CLEAR = 3.0  # standard deviations from nothing
@@ -22,8 +22,9 @@ CLIMB = 3  # models for which the likeliest scatter is searched: the base and th
 class Round:
     """One round of the search: a base model, every effect tried on top of it, and the evidence.
 
-    ``failed`` names effects that could not be tried on this part. ``rows`` (m,) bool are the values that all models predict; ``judge`` knows their noise. ``scatter`` holds the
-    likeliest lay-up scatter of the base and of every trial, ``cv_base`` the base's held-out error.
+    ``failed`` names effects that could not be tried on this part. ``rows`` (m,) bool are the values that all models
+    predict; ``judge`` knows their noise. ``scatter`` holds the likeliest lay-up scatter of the base and of every
+    trial, ``cv_base`` the base's held-out error.
     """
 
     base: Fitted
@@ -109,7 +110,7 @@ def _weigh(
     p_values = [chance(g, k) for g, k in zip(gains, unknowns, strict=True)]
     family = among_all(p_values)
     misfit = squares[0] - floor
-    clear = misfit > 3.0 * np.sqrt(2.0 * floor)  # else there is nothing to explain
+    clear = not is_noise(squares[0], int(floor))  # else there is nothing to explain
     out = []
     for k, model in enumerate(models[1:]):
         out.append(

@@ -27,7 +27,8 @@ class Effect:
     What a subclass says of itself: ``name``, by which it is found; ``summary``, one sentence; ``equation``, plain
     text; ``physics``, two or three sentences; ``source``; ``stage``, one of surface, placement, fabric, net;
     ``parameters``; ``seen_by``, the data that can show it; ``confounded_with``, names of effects that look alike.
-    ``rank`` orders effects of one stage; ``costly`` says that a net with it takes many times as long as without. ``values`` are its parameters' values by name.
+    ``rank`` orders effects of one stage; ``costly`` says that a net with it takes many times as long as without.
+    ``values`` are its parameters' values by name.
     Raises EffectError for parameters that it does not have, and values out of bounds.
     """
 

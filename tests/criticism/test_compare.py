@@ -43,7 +43,9 @@ def test_a_net_agrees_with_itself(net, exact):
 def test_residuals_are_measured_less_predicted_and_split_along_the_yarns(net, exact):
     normal = np.cross(exact.warp, exact.weft)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    moved = replace(exact, points=exact.points + 0.3 * exact.warp - 0.2 * exact.weft + 0.1 * normal, shear=exact.shear + 2)
+    moved = replace(
+        exact, points=exact.points + 0.3 * exact.warp - 0.2 * exact.weft + 0.1 * normal, shear=exact.shear + 2
+    )
     c = compare_net(net, moved)
     np.testing.assert_allclose(c.parts, [[0.3, -0.2, 0.1]] * len(exact), atol=1e-9)
     np.testing.assert_allclose(c.shear, 2.0, atol=1e-9)
@@ -133,13 +135,17 @@ def test_without_a_hidden_effect_nothing_but_noise_is_left():
     assert all(likeness.p > 0.01 for likeness in (c.structure.position, c.structure.shear))
 
 
-@pytest.mark.xfail(strict=True, reason="beside a vertex the heading counts in the plane of the facet, 0.1 degrees off")
+@pytest.mark.xfail(
+    strict=True, reason="beside a vertex the heading counts in the plane of the facet, 0.1 degrees off"
+)
 def test_an_origin_beside_a_vertex_does_as_well():
     surface, m, laid = measured("none")
     assert gd.compare(surface, m, **laid).scores.chi2_per_dof == pytest.approx(1.0, abs=0.12)
 
 
-@pytest.mark.parametrize(("name", "least", "most"), [("steering", 50, 400), ("weave-skew", 50, 400), ("springback", 2, 4)])
+@pytest.mark.parametrize(
+    ("name", "least", "most"), [("steering", 50, 400), ("weave-skew", 50, 400), ("springback", 2, 4)]
+)
 def test_an_independent_simulator_is_matched_to_its_noise_only_where_no_effect_is_hidden(name, least, most):
     surface, m, laid = measured(name)
     c = gd.compare(surface, m, **laid)

@@ -34,7 +34,9 @@ def _numbers(c, *, places=True):
     out |= {f"moran {k}": getattr(c.structure, k).moran for k in ("position", "shear")}
     out |= {f"{t.kind} {t.against} {what}": getattr(t, what) for t in c.trends for what in ("rho", "p")}
     out |= {f"{t.kind} {t.against} {k}": x for t in c.trends for k, x in enumerate(t.rms)}
-    out |= {f"region {k} {what}": getattr(r, what) for k, r in enumerate(worst_regions(c)) for what in ("size", "u", "v")}
+    out |= {
+        f"region {k} {what}": getattr(r, what) for k, r in enumerate(worst_regions(c)) for what in ("size", "u", "v")
+    }
     return out | {"gaps": unmeasured(c)[0], "outliers": float(len(c.outliers))}
 
 

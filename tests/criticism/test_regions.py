@@ -19,7 +19,11 @@ def quiet():
     net = gd.drape(surface, laid["origin"], laid["angle"], 8.0)
     points, shear = net.interpolate(m.u, m.v)
     rng = np.random.default_rng(0)
-    return surface, replace(m, points=points + rng.normal(0, 0.2, points.shape), shear=shear + rng.normal(0, 0.6, len(m))), laid
+    return (
+        surface,
+        replace(m, points=points + rng.normal(0, 0.2, points.shape), shear=shear + rng.normal(0, 0.6, len(m))),
+        laid,
+    )
 
 
 def test_noise_has_no_worst_region(quiet):
@@ -66,7 +70,9 @@ def test_turned_directions_are_a_region_too(quiet):
     warp, weft = net.directions(m.u, m.v)
     normal = np.cross(warp, weft)
     angle = np.radians(np.random.default_rng(1).normal(0.0, 0.5, len(m)) + 6.0 * (m.v > 90.0))[:, None]
-    turned = np.cos(angle) * warp + np.sin(angle) * np.cross(normal / np.linalg.norm(normal, axis=1, keepdims=True), warp)
+    turned = np.cos(angle) * warp + np.sin(angle) * np.cross(
+        normal / np.linalg.norm(normal, axis=1, keepdims=True), warp
+    )
     c = gd.compare(surface, replace(m, warp=turned), **laid)
     worst = worst_regions(c)[0]
     assert "+weft" in worst.name

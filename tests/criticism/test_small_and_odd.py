@@ -44,7 +44,14 @@ FLOATS = st.floats(-120.0, 120.0)
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(st.lists(st.tuples(FLOATS, FLOATS, FLOATS, FLOATS, FLOATS, st.one_of(st.just(np.nan), st.floats(-89.0, 89.0))), min_size=1, max_size=30), st.booleans())
+@given(
+    st.lists(
+        st.tuples(FLOATS, FLOATS, FLOATS, FLOATS, FLOATS, st.one_of(st.just(np.nan), st.floats(-89.0, 89.0))),
+        min_size=1,
+        max_size=30,
+    ),
+    st.booleans(),
+)
 def test_any_points_are_compared_or_refused(net, rows, labelled):
     table = np.array(rows)
     labels = {"u": table[:, 3], "v": table[:, 4]} if labelled else {}
