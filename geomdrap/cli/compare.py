@@ -8,7 +8,14 @@ from typing import Any
 import click
 
 from geomdrap.cli.measured import measured_argument, setup_options, table_options
-from geomdrap.cli.options import folder_option, json_option, part_argument, quiet_option, reading_options
+from geomdrap.cli.options import (
+    effect_options,
+    folder_option,
+    json_option,
+    part_argument,
+    quiet_option,
+    reading_options,
+)
 from geomdrap.cli.values import Names
 
 COMPARE_OUTPUTS = ("json", "csv", "vtu", "png")  # the keys of export.compare_outputs.COMPARE_OUTPUTS; a test compares
@@ -20,6 +27,7 @@ COMPARE_OUTPUTS = ("json", "csv", "vtu", "png")  # the keys of export.compare_ou
 @setup_options
 @table_options
 @reading_options
+@effect_options
 @folder_option("compare", "Folder for the result files; it is made if it is missing.")
 @click.option(
     "--outputs",
@@ -32,7 +40,16 @@ COMPARE_OUTPUTS = ("json", "csv", "vtu", "png")  # the keys of export.compare_ou
 @json_option
 @quiet_option
 def compare(
-    part: Path, measured: Path, folder: Path, outputs: tuple[str, ...], as_json: bool, quiet: bool, **asked: Any
+    part: Path,
+    measured: Path,
+    folder: Path,
+    outputs: tuple[str, ...],
+    effect_texts: tuple[str, ...],
+    model: Path | None,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+    quiet: bool,
+    **asked: Any,
 ) -> int:
     """Hold a drape of PART against the points in MEASURED: where it fails, and by how much.
 
@@ -44,11 +61,13 @@ def compare(
     \b
     Examples:
       geomdrap compare part.stl measured.csv --setup setup.toml
+      geomdrap compare part.stl measured.csv --setup setup.toml --model model.toml
       geomdrap compare part.stl measured.csv --origin 0,0,85 --angle 45 --sigma-xyz 0.2 -o against
       geomdrap compare part.stl grid.csv --columns i=index_x,j=index_y --mark-spacing 10 --angle 45
       geomdrap compare part.stl dic.txt --columns x=X,y=Y,z=Z,shear=Gamma --unit-measured m --json
     """
     import geomdrap as gd
+    from geomdrap.cli.acting import effects_of
     from geomdrap.cli.compare_summary import summary
     from geomdrap.cli.measured import read_asked
     from geomdrap.cli.messages import print_json, say
@@ -61,10 +80,11 @@ def compare(
         check_writable(folder)
     with Progress(quiet) as progress:
         progress.step("Reading")
+        effects = effects_of(effect_texts, model, plugins)
         ready = read_asked(part, measured, **asked)
         announce_compilation(quiet)
         progress.step("Comparing")
-        result = gd.compare(ready.surface, ready.measurement, **ready.laid)
+        result = gd.compare(ready.surface, ready.measurement, **ready.laid, effects=effects)
         progress.step("Writing")
         files = write_comparison(result, folder, outputs)
     say(result.warnings, (*ready.notes, *result.notes), quiet)

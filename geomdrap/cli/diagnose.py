@@ -8,7 +8,14 @@ from typing import Any
 import click
 
 from geomdrap.cli.measured import measured_argument, setup_options, table_options
-from geomdrap.cli.options import folder_option, json_option, part_argument, quiet_option, reading_options
+from geomdrap.cli.options import (
+    folder_option,
+    json_option,
+    part_argument,
+    plugin_option,
+    quiet_option,
+    reading_options,
+)
 from geomdrap.cli.values import Names
 
 DIAGNOSE_OUTPUTS = ("json", "png")  # the keys of export.diagnose_outputs.DIAGNOSE_OUTPUTS; a test compares
@@ -20,6 +27,7 @@ DIAGNOSE_OUTPUTS = ("json", "png")  # the keys of export.diagnose_outputs.DIAGNO
 @setup_options
 @table_options
 @reading_options
+@plugin_option
 @folder_option("diagnose", "Folder for the result files; it is made if it is missing.")
 @click.option(
     "--outputs",
@@ -32,7 +40,14 @@ DIAGNOSE_OUTPUTS = ("json", "png")  # the keys of export.diagnose_outputs.DIAGNO
 @json_option
 @quiet_option
 def diagnose(
-    part: Path, measured: Path, folder: Path, outputs: tuple[str, ...], as_json: bool, quiet: bool, **asked: Any
+    part: Path,
+    measured: Path,
+    folder: Path,
+    outputs: tuple[str, ...],
+    plugins: tuple[Path, ...],
+    as_json: bool,
+    quiet: bool,
+    **asked: Any,
 ) -> int:
     """Say which physical effect the drape of PART lacks, by the points in MEASURED.
 
@@ -44,9 +59,11 @@ def diagnose(
     \b
     Examples:
       geomdrap diagnose part.stl measured.csv --setup setup.toml
+      geomdrap diagnose part.stl measured.csv --setup setup.toml --plugin my_effect.py
       geomdrap diagnose part.stl measured.csv --origin 0,0,85 --angle 45 --sigma-xyz 0.2 --json
     """
     import geomdrap as gd
+    from geomdrap.cli.acting import effects_of
     from geomdrap.cli.diagnose_summary import summary
     from geomdrap.cli.measured import read_asked
     from geomdrap.cli.messages import print_json, say
@@ -58,6 +75,7 @@ def diagnose(
         check_writable(folder)
     with Progress(quiet) as progress:
         progress.step("Reading")
+        effects_of((), None, plugins)
         ready = read_asked(part, measured, **asked)
         announce_compilation(quiet)
         progress.step("Diagnosing")

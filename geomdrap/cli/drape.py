@@ -24,7 +24,6 @@ from geomdrap.cli.options import (
 if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
     from geomdrap.fields import Drape
-    from geomdrap.fishnet import Effect
 
 
 @click.command()
@@ -110,6 +109,7 @@ def compute(
 ) -> Drape:
     """Read, drape and evaluate; ``drape_options`` go to `geomdrap.drape` as they are."""
     import geomdrap as gd
+    from geomdrap.cli.acting import effects_of
 
     effects = effects_of(effect_texts, model, plugins)
     progress.step("Reading")
@@ -121,14 +121,3 @@ def compute(
     progress.step("Evaluating")
     result: Drape = gd.evaluate(net, limit_angle, progress.share)
     return result
-
-
-def effects_of(texts: tuple[str, ...], model: Path | None, plugins: tuple[Path, ...]) -> list[Effect]:
-    """The effects of a model file and of the command line; plugins first, so that both may name theirs."""
-    if not (texts or model or plugins):
-        return []
-    from geomdrap import effects
-
-    for plugin in plugins:
-        effects.load_plugin(plugin)
-    return [*(effects.read_model(model) if model else ()), *map(effects.parse, texts)]

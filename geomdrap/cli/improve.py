@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from geomdrap.cli.measured import measured_argument, setup_options, table_options
-from geomdrap.cli.options import json_option, part_argument, quiet_option, reading_options
+from geomdrap.cli.options import json_option, part_argument, plugin_option, quiet_option, reading_options
 
 
 @click.command()
@@ -17,6 +17,7 @@ from geomdrap.cli.options import json_option, part_argument, quiet_option, readi
 @setup_options
 @table_options
 @reading_options
+@plugin_option
 @click.option(
     "-o",
     "--output",
@@ -29,7 +30,9 @@ from geomdrap.cli.options import json_option, part_argument, quiet_option, readi
 )
 @json_option
 @quiet_option
-def improve(part: Path, measured: Path, model: Path, as_json: bool, quiet: bool, **asked: Any) -> int:
+def improve(
+    part: Path, measured: Path, model: Path, plugins: tuple[Path, ...], as_json: bool, quiet: bool, **asked: Any
+) -> int:
     """Add missing effects to the drape of PART, one by one, until it agrees with MEASURED to the noise.
 
     Writes the improved model, and a picture of how the error falls, held out too. What stays unexplained is said.
@@ -41,6 +44,7 @@ def improve(part: Path, measured: Path, model: Path, as_json: bool, quiet: bool,
       geomdrap improve part.stl measured.csv --origin 0,0,85 --angle 45 --json
     """
     import geomdrap as gd
+    from geomdrap.cli.acting import effects_of
     from geomdrap.cli.diagnose_summary import improvement_summary
     from geomdrap.cli.measured import read_asked
     from geomdrap.cli.messages import print_json, say
@@ -55,6 +59,7 @@ def improve(part: Path, measured: Path, model: Path, as_json: bool, quiet: bool,
     check_writable(model.parent)
     with Progress(quiet) as progress:
         progress.step("Reading")
+        effects_of((), None, plugins)
         ready = read_asked(part, measured, **asked)
         announce_compilation(quiet)
         progress.step("Improving")

@@ -1,0 +1,72 @@
+"""`geomdrap diagnose` and `geomdrap improve` from end to end, and the better model used again."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from geomdrap.blind import make
+from geomdrap.cli import cli
+
+OWN = """
+import geomdrap as gd
+from dataclasses import replace
+
+
+class Shrinkage(gd.Effect):
+    name = "shrinkage"
+    summary = "Yarns shrink."
+    stage = "fabric"
+    parameters = (gd.Parameter("strain", "", 0.0, 0.05, 0.004, 0.0, "share by which yarns shrink"),)
+
+    def on_fabric(self, fabric):
+        return replace(fabric, strain_warp=fabric.strain_warp - self.values["strain"])
+"""
+
+
+@pytest.fixture(scope="module")
+def ply(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return make(3, effect="weave-skew", part="saddle", points=90, folder=tmp_path_factory.mktemp("ply"))
+
+
+def run(command: str, ply: Path, *more: str) -> dict:
+    asked = [command, str(ply / "part.stl"), str(ply / "measured.csv"), "--setup", str(ply / "setup.toml"), "--json"]
+    result = CliRunner().invoke(cli, [*asked, *more], catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
+
+
+@pytest.mark.slow
+def test_what_improve_finds_takes_the_error_of_compare_to_the_noise(ply: Path, tmp_path: Path) -> None:
+    model = tmp_path / "model.toml"
+    found = run("improve", ply, "-o", str(model))
+    assert found["schema"] == "geomdrap.improve/1"
+    assert found["verdict"] == "weave-skew"
+    assert [step["added"] for step in found["steps"]] == [None, "placement", "weave-skew"]
+    assert (tmp_path / "improve.png").stat().st_size > 10_000
+    before, after = (
+        run("compare", ply, "--outputs", "none"),
+        run("compare", ply, "--outputs", "none", "--model", str(model)),
+    )
+    assert before["chi2_per_dof"] > 3.0
+    assert after["chi2_per_dof"] == pytest.approx(1.0, abs=0.2)
+
+
+@pytest.mark.slow
+def test_diagnose_tries_effects_of_the_users_own(ply: Path, tmp_path: Path) -> None:
+    plugin = tmp_path / "own.py"
+    plugin.write_text(OWN)
+    found = run("diagnose", ply, "-o", str(tmp_path / "d"), "--plugin", str(plugin))
+    assert found["verdict"] == "weave-skew"
+    assert "shrinkage" in [effect["name"] for effect in found["effects"]]
+    assert {"diagnose.json", "diagnose.png"} <= {path.name for path in (tmp_path / "d").iterdir()}
+
+
+def test_a_model_file_that_is_no_toml_is_refused(ply: Path) -> None:
+    asked = ["improve", str(ply / "part.stl"), str(ply / "measured.csv"), "-o", "model.txt"]
+    result = CliRunner().invoke(cli, asked)
+    assert result.exit_code == 2
+    assert "ends in .toml" in result.output
