@@ -85,7 +85,7 @@ def search(experiment: Experiment, names: Sequence[str], progress: Progress) -> 
         if best is None or len(rounds) == MOST_EFFECTS or _locks(experiment, rounds[0]):
             return rounds
         base, scatter = rounds[-1].trial(best)
-        if not left_over(experiment, base, scatter).structured:
+        if not (worth_more(rounds[0], base) and left_over(experiment, base, scatter).structured):
             return rounds
 
 
@@ -113,6 +113,16 @@ def chosen(rounds: Sequence[Round]) -> str | None:
     return found[0]
 
 
+def worth_more(first: Round, model: Fitted) -> bool:
+    """Whether a model leaves as much of the first misfit as a further effect would have to explain.
+
+    Less is what facets, the pitch and other definitions of the same effect make.
+    """
+    noise = first.judge.noise
+    before, after = (float(np.sum((m.fit.residual[first.rows] / noise) ** 2 - 1.0)) for m in (first.base, model))
+    return not model.model.effects or not after < WORTH * before
+
+
 def left_over(experiment: Experiment, model: Fitted, scatter: Scatter) -> Leftover:
     """What a model leaves."""
     rows = np.isfinite(model.fit.residual)
@@ -137,7 +147,7 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         names, alike = [LOCKING], (LOCKING,)
         model, scatter = rounds[0].trial(LOCKING)
         left = left_over(experiment, model, scatter)
-    verdict, candidates = _verdict(experiment, model, scatter, names, alike, left)
+    verdict, candidates = _verdict(experiment, model, scatter, names, alike, left, worth_more(rounds[0], model))
     steps = _steps(experiment, rounds, names)
     return Diagnosis(
         verdict=verdict,
@@ -191,11 +201,12 @@ def _verdict(
     names: Sequence[str],
     alike: Sequence[str],
     left: Leftover,
+    unexplained: bool,
 ) -> tuple[str, tuple[str, ...]]:
     """Verdict and candidates."""
     if names and len(alike) > 1:
         return AMBIGUOUS, (*names[:-1], *alike)
-    if left.structured and list(names) != [LOCKING]:
+    if left.structured and unexplained and list(names) != [LOCKING]:
         return UNKNOWN, tuple(names)
     if names:
         return "+".join(names), tuple(names)
