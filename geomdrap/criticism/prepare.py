@@ -73,6 +73,8 @@ def prepare(
         mask[outlier.row] &= ~np.array(kind) if outlier.kind == "position" else np.array(kind)
     if not mask.any():
         raise MeasurementError(f"{measurement.source}: every point stands out from its neighbours; check the table")
+    # the seed was near enough to the part; on the surfaces that effects make of it, it may lie further off
+    lay = replace(lay, project=True)
     experiment = Experiment(
         surface, measurement, lay, at, frames, channels, mask, flatten(sigma, mask), flatten(values, mask), pitches
     )

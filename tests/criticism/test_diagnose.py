@@ -145,3 +145,20 @@ def test_a_measurement_of_another_place_is_refused(skewed):
     surface, measurement, told = skewed
     with pytest.raises(gd.MeasurementError, match="off"):
         gd.diagnose(surface, replace(measurement, points=measurement.points + 1e4), **told)
+
+
+def test_a_ply_much_thicker_than_the_pitch_is_found(tmp_path):
+    make(1002, effect="thickness", part="ridge", folder=tmp_path)
+    setup = gd.read_setup(tmp_path / "setup.toml")
+    d = gd.diagnose(
+        gd.read_surface(tmp_path / "part.stl"),
+        gd.read_measurement(tmp_path / "measured.csv"),
+        origin=setup.origin,
+        angle=setup.angle,
+        pitch=2.0,
+        sigma_xyz=0.2,
+        sigma_shear=0.6,
+        effects=("thickness", "weave-skew"),
+    )
+    assert d.verdict == "thickness"
+    assert values(d)["offset"] > 2.0
