@@ -1,6 +1,6 @@
 """Residuals whose sum of squares is the energy of a net on a sheet, with derivatives by the points of its nodes.
 
-DESIGN: Σ (l/l0 − 1)² over the sides + ratio · Σ sin²γ/4 over the corners of the cells, and what the recipe adds.
+Energy: Σ (l/l0 − 1)² over the sides + ratio · Σ sin²γ/4 over the corners of the cells, and what the recipe adds.
 """
 
 from __future__ import annotations

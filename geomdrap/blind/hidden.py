@@ -1,6 +1,6 @@
 """The effects a blind set can hide: what each does to the recipe, how large it is drawn, on which parts it shows.
 
-Names and parameters are those of the library (DESIGN section 7), sizes about those that real plies show.
+Names and parameters are those of the library, sizes about those that real plies show.
 ``amount`` scales how strong the effect is: 1 as drawn, 0.5 half as strong.
 """
 
@@ -32,7 +32,7 @@ class Hidden:
 
     draw: Draw
     parts: tuple[str, ...] = EVERYWHERE
-    library: bool = True
+    known: bool = True
     """Whether it is in the library; others must be called unknown."""
 
 
@@ -134,12 +134,12 @@ HIDDEN: dict[str, Hidden] = {
     "springback": Hidden(_springback, SHEARED),
     "shear-asymmetry": Hidden(_asymmetry, RELAXING),
     "crossing-slip": Hidden(_crossing, MUCH_SHEARED),
-    "gravity-sag": Hidden(_sag, library=False),
-    "drape-order": Hidden(_order, library=False),
-    "yarn-bending": Hidden(_bending, ("dome", "saddle"), library=False),
-    "heat-growth": Hidden(_heat, library=False),
+    "gravity-sag": Hidden(_sag, known=False),
+    "drape-order": Hidden(_order, known=False),
+    "yarn-bending": Hidden(_bending, ("dome", "saddle"), known=False),
+    "heat-growth": Hidden(_heat, known=False),
 }
 
-LIBRARY = tuple(name for name, hidden in HIDDEN.items() if hidden.library)
-OUTSIDE = tuple(name for name, hidden in HIDDEN.items() if not hidden.library)
+LIBRARY = tuple(name for name, hidden in HIDDEN.items() if hidden.known)
+OUTSIDE = tuple(name for name, hidden in HIDDEN.items() if not hidden.known)
 """What no effect of the library is: the right verdict is ``unknown``."""

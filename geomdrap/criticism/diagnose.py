@@ -163,7 +163,7 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         leftover=left,
         outliers=_outliers(experiment, model),
         hints=hints_for(experiment, rounds, verdict, candidates, model, left),
-        notes=(*notes, *_failures(rounds)),
+        notes=(*notes, *_failures(experiment, rounds)),
     )
 
 
@@ -182,9 +182,12 @@ def _locks(experiment: Experiment, first: Round) -> bool:
     return possible and shear_stops(experiment, first.base) is not None
 
 
-def _failures(rounds: Sequence[Round]) -> tuple[str, ...]:
-    """What could not be tried."""
-    return tuple(f"{name} could not be tried: no net with it covers these points" for name in rounds[0].failed)
+def _failures(experiment: Experiment, rounds: Sequence[Round]) -> tuple[str, ...]:
+    """What could not be tried, or not at all of the values that the search wanted."""
+    failed, refused = rounds[0].failed, experiment.refused
+    bare = [f"{n} could not be tried: no net with it covers these points" for n in failed if n not in refused]
+    said = {n: "could not be tried" if n in failed else "was refused at some values" for n in refused}
+    return (*bare, *(f"{n} {what}: {refused[n]}" for n, what in said.items()))
 
 
 def _outliers(experiment: Experiment, model: Fitted) -> tuple[Outlier, ...]:

@@ -41,7 +41,8 @@ class Experiment:
 
     ``at`` (n, 2) mm fabric coordinates of the points; ``channels`` (c,) names of ``CHANNELS``; ``mask`` (n, c) which
     were measured; ``noise`` (m,) their standard deviations, mm or degrees; ``measured`` (m,); vectors hold the true
-    entries of ``mask``, channel by channel. ``frames`` (n, 3, 3): along the warp, across it, and the normal.
+    entries of ``mask``, channel by channel. ``refused``: why a drape with an effect could not be made at some of the
+    values tried, by its name. ``frames`` (n, 3, 3): along the warp, across it, and the normal.
     """
 
     surface: Surface
@@ -55,6 +56,7 @@ class Experiment:
     measured: np.ndarray
     pitches: tuple[float, float]
     surfaces: dict[str, Surface] = field(default_factory=dict)
+    refused: dict[str, str] = field(default_factory=dict)
 
     def predict(self, effects: Sequence[Effect] = ()) -> np.ndarray:
         """The model's values (m,), NaN where it has none."""

@@ -109,7 +109,8 @@ def predictor(experiment: Experiment, model: Model) -> Callable[[np.ndarray], np
         if key not in kept:
             try:
                 kept[key] = experiment.predict(model.built(values))
-            except GeomdrapError:  # such as a seed moved off the part: this place predicts nothing
+            except GeomdrapError as error:  # as for a seed moved off the part: nothing is predicted, and that is said
+                experiment.refused[model.names[-1]] = str(error)
                 kept[key] = np.full(len(experiment.measured), np.nan)
         return kept[key]
 

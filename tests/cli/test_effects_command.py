@@ -11,6 +11,7 @@ from click.testing import CliRunner
 import geomdrap as gd
 from geomdrap.cli import cli
 from geomdrap.effects import registry
+from geomdrap.effects.registry import LIBRARY
 
 PLUGIN = Path(__file__).parents[2] / "samples" / "my_effect.py"
 
@@ -31,7 +32,7 @@ def run(*arguments):
 
 def test_the_table_names_all_effects_with_their_units():
     lines = run("effects").stdout.splitlines()
-    assert [line.split()[0] for line in lines] == list(registry.LIBRARY)
+    assert [line.split()[0] for line in lines] == list(LIBRARY)
     assert "curvature_warp [1/m], curvature_weft [1/m]" in "\n".join(lines)
 
 
@@ -46,7 +47,7 @@ def test_json_holds_the_same():
     assert document["schema"] == "geomdrap.effects/1"
     (effect,) = document["effects"]
     assert effect["parameters"][0]["unit"] == "mm"
-    assert len(json.loads(run("effects", "--json").stdout)["effects"]) == len(registry.LIBRARY)
+    assert len(json.loads(run("effects", "--json").stdout)["effects"]) == len(LIBRARY)
 
 
 def test_a_picture_of_the_signature_is_written(tmp_path):

@@ -75,6 +75,7 @@ def test_true_values_lie_within_their_intervals():
                     low, high = value.interval
                     inside.append(low <= factor * exact <= high)
     assert len(inside) >= 9
+    # bridging and the weft of steering lie outside by what facets and other definitions make; 0.85 is not shown
     assert np.mean(inside) >= 0.75
 
 
