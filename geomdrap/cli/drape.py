@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
+from geomdrap.cli.lazy import COMMAND
 from geomdrap.cli.options import (
     cloth_options,
     effect_options,
@@ -62,7 +63,8 @@ def drape(
     with Progress(quiet) as progress:
         result = compute(progress, lambda: announce_compilation(quiet), **asked)
         progress.step("Writing")
-        files = write_all(result, folder, outputs, progress.share)
+        command = click.get_current_context().meta.get(COMMAND, "")
+        files = write_all(result, folder, outputs, progress.share, command)
     say(result.warnings, (*result.net.notes, *_left_over(folder, files)), quiet)
     if as_json:
         print_json(as_dict(result, files))

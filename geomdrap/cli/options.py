@@ -10,7 +10,7 @@ import click
 
 from geomdrap.cli.values import Direction, Names, Number, Origin, Size
 
-OUTPUTS = ("json", "csv", "vtu", "png", "dxf", "svg")  # the keys of export.outputs.OUTPUTS; a test compares
+OUTPUTS = ("json", "csv", "vtu", "png", "dxf", "svg", "html")  # the keys of export.outputs.OUTPUTS; a test compares
 
 F = TypeVar("F", bound=Callable[..., Any])
 

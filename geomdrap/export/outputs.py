@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from geomdrap.export import report_json
+from geomdrap.export import report_html, report_json
 from geomdrap.export.whole import whole_folder
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ OUTPUTS: dict[str, tuple[Output, ...]] = {
     "png": (Output("png", "shear.png", "geomdrap.export.picture", 0.53, in_steps=True),),
     "dxf": (Output("dxf", "flat.dxf", "geomdrap.export.dxf", 0.04),),
     "svg": (Output("svg", "flat.svg", "geomdrap.export.svg", 0.01),),
+    "html": (Output("html", "report.html", "geomdrap.export.report_html", 0.05),),
 }
 
 
@@ -56,12 +57,13 @@ def write_all(
     folder: Path,
     names: Iterable[str] = tuple(OUTPUTS),
     progress: Callable[[float], None] = lambda _: None,
+    command: str = "",
 ) -> dict[str, Path]:
     """Write the outputs ``names`` of ``result`` to ``folder``; all of them appear together, or none does.
 
     Returns the path of each file by its key (``json``, ``csv``, ``net_vtu``, ``part_vtu``, ``png``,
-    ``dxf``, ``svg``). ``progress`` is called with the share done, 0 to 1. Raises `GeomdrapError` if the
-    folder cannot be written.
+    ``dxf``, ``svg``, ``html``). ``progress`` is called with the share done, 0 to 1; ``command`` is the command line
+    that the report shows. Raises `GeomdrapError` if the folder cannot be written.
     """
     wanted = list(names)
     chosen = [output for name in OUTPUTS if name in wanted for output in OUTPUTS[name]]
@@ -75,6 +77,8 @@ def write_all(
             within = partial(_part_of, progress, before / whole, output.weight / whole)
             if output.key == "json":
                 report_json.write(result, scratch / output.file, files)
+            elif output.key == "html":
+                report_html.write(result, scratch / output.file, command)
             else:
                 output.write(result, scratch / output.file, within)
             within(1.0)
