@@ -38,6 +38,13 @@ if TYPE_CHECKING:
 @folder_option("drape", "Folder for the result files; it is made if it is missing.")
 @outputs_option
 @element_options
+@click.option(
+    "--paper",
+    type=click.Choice(["A4", "A3"], case_sensitive=False),
+    default="A4",
+    show_default=True,
+    help="Paper of the pages of cut.pdf, which --outputs pdf writes in true scale.",
+)
 @click.option("--strict", is_flag=True, help="Exit with code 1 if less than 99.5 % of the part is covered.")
 @json_option
 @quiet_option
@@ -47,6 +54,7 @@ def drape(
     onto: Path | None,
     fe_axis: tuple[float, float, float] | None,
     ply_thickness: float | None,
+    paper: str,
     strict: bool,
     as_json: bool,
     quiet: bool,
@@ -63,6 +71,7 @@ def drape(
       geomdrap drape hemisphere.stl --origin -5,5,84.4 --angle 45 --pitch 4 -o hemisphere-45
       geomdrap drape hood.stl --origin vertex:120 --blank 800x600 --outputs json,dxf --json
       geomdrap drape hood.stl --effect slip:coefficient=0.6 --effect thickness:offset=1.5
+      geomdrap drape hood.stl --angle 45 --outputs cut,pdf --paper A3
       geomdrap drape hood.stl --angle 45 --onto hood_fe.inp --ply-thickness 0.3
     """
     from geomdrap.cli.messages import print_json, say
@@ -78,7 +87,7 @@ def drape(
         progress.step("Writing")
         command = click.get_current_context().meta.get(COMMAND, "")
         elements = ply_on(result, mesh, fe_axis, outputs)
-        files = write_all(result, folder, outputs, progress.share, Extras(command, elements, ply_thickness))
+        files = write_all(result, folder, outputs, progress.share, Extras(command, elements, ply_thickness, paper))
     without = elements.notes() if elements is not None else []
     say((*result.warnings, *without), (*result.net.notes, *_left_over(folder, files)), quiet)
     if as_json:

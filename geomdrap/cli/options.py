@@ -12,7 +12,7 @@ from geomdrap.cli.values import Direction, Names, Number, Origin, Size
 
 USUAL = ("json", "csv", "vtu", "png", "dxf", "svg", "html")  # export.outputs.USUAL; a test compares
 FE_OUTPUTS = ("abaqus", "nastran", "optistruct", "radioss", "acp")
-OUTPUTS = (*USUAL, *FE_OUTPUTS)  # the keys of export.outputs.OUTPUTS; a test compares
+OUTPUTS = (*USUAL, "cut", "pdf", *FE_OUTPUTS)  # the keys of export.outputs.OUTPUTS; a test compares
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -164,7 +164,8 @@ def outputs_option(function: F) -> F:
         metavar="name,name,...",
         default=",".join(USUAL),
         show_default=True,
-        help=f"Which result files to write; none writes none. For finite elements: {', '.join(FE_OUTPUTS)}.",
+        help=f"Which result files to write; none writes none. For the cutting table: cut, pdf. "
+        f"For finite elements: {', '.join(FE_OUTPUTS)}.",
     )(function)
 
 

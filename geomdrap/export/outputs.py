@@ -21,12 +21,13 @@ class Extras:
     """What some formats take beside the drape.
 
     ``command``: the command line that the report shows. ``elements``: the ply on a finite element mesh; None: on the
-    part's own facets. ``ply_thickness`` mm of the flat fabric, for decks that hold thicknesses.
+    part's own facets. ``ply_thickness`` mm of the flat fabric, for decks that hold thicknesses. ``paper``: A4 or A3.
     """
 
     command: str = ""
     elements: ElementPly | None = None
     ply_thickness: float | None = None
+    paper: str = "A4"
 
 
 class Output(NamedTuple):
@@ -34,7 +35,8 @@ class Output(NamedTuple):
 
     ``weight`` is about the time that it takes on a large part, of 1 for all; ``takes`` says what the function takes:
     ``result``; ``progress``, the result and a ``progress`` of its own; ``files``, the result and the paths of all
-    files; ``command``, the result and the command line; ``elements``, the ply on elements and its thickness.
+    files; ``command``, the result and the command line; ``elements``, the ply on elements and its thickness;
+    ``paper``, the result and the paper.
     """
 
     key: str
@@ -60,6 +62,8 @@ class Output(NamedTuple):
             writer(result, path, files)
         elif self.takes == "command":
             writer(result, path, extras.command)
+        elif self.takes == "paper":
+            writer(result, path, extras.paper)
         elif self.takes == "progress":
             writer(result, path, progress=progress)
         else:
@@ -77,6 +81,8 @@ OUTPUTS: dict[str, tuple[Output, ...]] = {
     "dxf": (Output("dxf", "flat.dxf", "geomdrap.export.dxf", 0.04),),
     "svg": (Output("svg", "flat.svg", "geomdrap.export.svg", 0.01),),
     "html": (Output("html", "report.html", "geomdrap.export.report_html", 0.05, takes="command"),),
+    "cut": (Output("cut", "cut.dxf", "geomdrap.export.cut_dxf", 0.04),),
+    "pdf": (Output("pdf", "cut.pdf", "geomdrap.export.cut_pdf", 0.5, takes="paper"),),
     "abaqus": (Output("abaqus", "fe.inp", "geomdrap.export.fe_abaqus", 0.2, takes="elements"),),
     "nastran": (Output("nastran", "fe.bdf", "geomdrap.export.fe_nastran", 0.2, takes="elements"),),
     "optistruct": (Output("optistruct", "fe.fem", "geomdrap.export.fe_optistruct", 0.1, takes="elements"),),
