@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from geomdrap.errors import GeomdrapError
 from geomdrap.export.fe_mesh import FeMesh, Floats, angle_between, laid_into, unit
-from geomdrap.export.report_mesh import at_corners, barycentric, piece_shear, report_mesh
+from geomdrap.export.ply_corners import at_corners, barycentric, piece_shear, ply_corners
 from geomdrap.fields.evaluate import unit_directions
 from geomdrap.surface.nearest import NearestTree
 
@@ -131,7 +131,7 @@ def require_size(mesh: FeMesh, part: Surface) -> float:
 
 def interpolated(result: Drape, piece: np.ndarray, shares: Floats) -> tuple[Floats, Floats, Floats]:
     """Warp and weft (k, 3) and shear (k,) at shares (k, 3) of the corners of facets cut to the pitch (k,)."""
-    joined = report_mesh(result).triangles.astype(np.int64)  # corners with one place in the fabric and one normal
+    joined, _ = ply_corners(result).joined()
     bare, area = result.trimmed.kind == 0, result.trimmed.area
 
     def field(values: Floats) -> Floats:

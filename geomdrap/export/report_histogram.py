@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.export import palette
-from geomdrap.export.report_mesh import piece_shear
+from geomdrap.export.ply_corners import piece_shear
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape

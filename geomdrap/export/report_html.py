@@ -17,8 +17,9 @@ import numpy as np
 
 from geomdrap import __version__
 from geomdrap.export import palette
+from geomdrap.export.ply_corners import Box
 from geomdrap.export.report_json import plain
-from geomdrap.export.report_mesh import Box, ReportMesh, report_mesh
+from geomdrap.export.report_mesh import ReportMesh, report_mesh
 from geomdrap.export.report_parts import cards, escaped, header, legend, notices, pattern_size, tiles
 from geomdrap.export.whole import write_whole
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import os
+import select
 import shutil
 import subprocess
 import sys
@@ -68,6 +69,7 @@ class Page:
 
     def receive(self) -> dict[str, Any]:
         while b"\0" not in self.buffer:
+            assert select.select([self.back], [], [], PATIENCE)[0], "the browser does not answer"
             data = os.read(self.back, 1 << 20)
             assert data, "the browser has gone"
             self.buffer += data

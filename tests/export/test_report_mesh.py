@@ -7,7 +7,8 @@ import pytest
 from exact_nets import sphere_shear_at
 
 import geomdrap as gd
-from geomdrap.export.report_mesh import BARE, STEPS, barycentric, on_octahedron, report_mesh
+from geomdrap.export.ply_corners import STEPS, barycentric, on_octahedron
+from geomdrap.export.report_mesh import BARE, report_mesh
 from geomdrap.fishnet import Status
 from geomdrap.surface import shapes
 
@@ -101,3 +102,42 @@ def test_shares_in_a_triangle_give_the_point_back():
     rng = np.random.default_rng(1)
     triangle, share = rng.normal(size=(50, 3, 3)), rng.dirichlet((1, 1, 1), (50, 4))
     np.testing.assert_allclose(barycentric(np.einsum("mcp,mpk->mck", share, triangle), triangle), share, atol=1e-9)
+
+
+def area_of(points, triangles):
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+
+
+def test_large_plane_facets_are_not_drawn_in_pieces():
+    plane = shapes.plane(300.0, 200.0, 100.0)
+    result = gd.evaluate(gd.drape(plane, (0, 0, 0), 20.0, 5.0, project=True))
+    assert len(result.trimmed.mesh.triangles) > 1000
+    mesh = report_mesh(result)
+    assert len(mesh.triangles) == len(plane.triangles)
+    points, at, shear = places(mesh)
+    assert area_of(points, mesh.triangles) == pytest.approx(60000.0, rel=1e-4)
+    assert np.abs(shear).max() < 0.01
+    turn = np.radians(20.0)
+    flat = points[:, :2] @ np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    np.testing.assert_allclose(at, flat, atol=0.02)
+
+
+def test_pieces_that_are_put_together_differ_from_the_cut_ones_by_less_than_can_be_seen():
+    surface, pitch = shapes.sphere_cap(RADIUS, 60.0, 14.0), 4.0
+    result = gd.evaluate(gd.drape(surface, (0, 0, RADIUS), 20.0, pitch, (60.0, 1000.0), project=True))
+    mesh, cut = report_mesh(result), result.trimmed
+    points, at, shear = places(mesh)
+    assert len(mesh.triangles) < 0.8 * len(cut.kind)
+    assert area_of(points, mesh.triangles) == pytest.approx(surface.area, rel=1e-4)
+    from geomdrap.surface.nearest import NearestTree
+
+    draped = (mesh.shear[mesh.triangles] > -30000).all(axis=1)
+    near = NearestTree(points, mesh.triangles[draped].astype(np.int64)).query(
+        cut.mesh.points[cut.mesh.triangles[cut.kind > 0]].mean(axis=1)
+    )
+    assert near.distance.max() < 0.01
+    corners = mesh.triangles[draped][near.face]
+    share = barycentric(near.point[:, None], points[corners])[:, 0]
+    read = np.einsum("mc,mck->mk", share, at[corners])
+    assert np.abs(read - cut.at[cut.kind > 0].mean(axis=1)).max() < 0.02 * pitch + 0.02
