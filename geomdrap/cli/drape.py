@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
+from geomdrap.cli.elements import fe_mesh_of, ply_on
+from geomdrap.cli.lazy import COMMAND
 from geomdrap.cli.options import (
     cloth_options,
     effect_options,
+    element_options,
     folder_option,
     json_option,
     outputs_option,
@@ -34,11 +37,28 @@ if TYPE_CHECKING:
 @reading_options
 @folder_option("drape", "Folder for the result files; it is made if it is missing.")
 @outputs_option
+@element_options
+@click.option(
+    "--paper",
+    type=click.Choice(["A4", "A3"], case_sensitive=False),
+    default="A4",
+    show_default=True,
+    help="Paper of the pages of cut.pdf, which --outputs pdf writes in true scale.",
+)
 @click.option("--strict", is_flag=True, help="Exit with code 1 if less than 99.5 % of the part is covered.")
 @json_option
 @quiet_option
 def drape(
-    folder: Path, outputs: tuple[str, ...], strict: bool, as_json: bool, quiet: bool, **asked: Any
+    folder: Path,
+    outputs: tuple[str, ...],
+    onto: Path | None,
+    fe_axis: tuple[float, float, float] | None,
+    ply_thickness: float | None,
+    paper: str,
+    strict: bool,
+    as_json: bool,
+    quiet: bool,
+    **asked: Any,
 ) -> int:
     """Drape PART: net, shear map, flat pattern, statistics.
 
@@ -51,19 +71,25 @@ def drape(
       geomdrap drape hemisphere.stl --origin -5,5,84.4 --angle 45 --pitch 4 -o hemisphere-45
       geomdrap drape hood.stl --origin vertex:120 --blank 800x600 --outputs json,dxf --json
       geomdrap drape hood.stl --effect slip:coefficient=0.6 --effect thickness:offset=1.5
+      geomdrap drape hood.stl --angle 45 --outputs cut,pdf --paper A3
+      geomdrap drape hood.stl --angle 45 --onto hood_fe.inp --ply-thickness 0.3
     """
     from geomdrap.cli.messages import print_json, say
     from geomdrap.cli.progress import Progress, announce_compilation
     from geomdrap.cli.summary import summary
-    from geomdrap.export.outputs import write_all
+    from geomdrap.export.outputs import Extras, write_all
     from geomdrap.export.report_json import as_dict, is_incomplete
 
     _check_folder(folder, outputs)
+    mesh, outputs = fe_mesh_of(onto, outputs)
     with Progress(quiet) as progress:
         result = compute(progress, lambda: announce_compilation(quiet), **asked)
         progress.step("Writing")
-        files = write_all(result, folder, outputs, progress.share)
-    say(result.warnings, (*result.net.notes, *_left_over(folder, files)), quiet)
+        command = click.get_current_context().meta.get(COMMAND, "")
+        elements = ply_on(result, mesh, fe_axis, outputs)
+        files = write_all(result, folder, outputs, progress.share, Extras(command, elements, ply_thickness, paper))
+    without = elements.notes() if elements is not None else []
+    say((*result.warnings, *without), (*result.net.notes, *_left_over(folder, files)), quiet)
     if as_json:
         print_json(as_dict(result, files))
     elif not quiet:
