@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-SWEEP_OUTPUTS = ("json", "csv", "best")  # the keys of export.sweep_outputs.SWEEP_OUTPUTS; a test compares
+SWEEP_OUTPUTS = ("json", "csv", "png", "best")  # the keys of export.sweep_outputs.SWEEP_OUTPUTS; a test compares
 
 
 def lay_options(function: F) -> F:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from geomdrap.fields import Drape
     from geomdrap.sweep import Sweep
 
-SWEEP_OUTPUTS = {"json": "sweep.json", "csv": "sweep.csv", "best": "best"}
+SWEEP_OUTPUTS = {"json": "sweep.json", "csv": "sweep.csv", "png": "sweep.png", "best": "best"}
 
 
 def write_sweep(
@@ -44,3 +44,7 @@ def _write(key: str, sweep: Sweep, path: Path, files: dict[str, Path]) -> None:
         write_whole(path, as_text(as_dict(sweep, files)))
     elif key == "csv":
         write_whole(path, as_table(sweep))
+    elif key == "png":
+        from geomdrap.export import sweep_picture
+
+        sweep_picture.write(sweep, path)

@@ -122,9 +122,7 @@ def _grid(surface: Surface, text: str) -> tuple[list[Point], int]:
     n, m = (int(match[1]), int(match[2])) if match else (0, 0)
     if n == 0 or m == 0 or n * m > MOST:
         raise SweepError(f"origins {text!r}: a grid is grid:NxM, as in grid:5x5, of up to {MOST:,} points")
-    up = _upward(surface)
-    along = heading_frame(up, None)
-    frame = np.stack([along, np.cross(up, along), up])
+    frame = plan_frame(surface)
     local = surface.points @ frame.T
     low, high = local.min(axis=0), local.max(axis=0)
     steps = (high - low)[:2] / [n, m]
@@ -135,6 +133,13 @@ def _grid(surface: Surface, text: str) -> tuple[list[Point], int]:
     plan = low[:2] + (np.column_stack([i, j]) + 0.5) * steps
     points = np.column_stack([plan, height[i, j]]) @ frame
     return [_point(point) for point in surface.nearest(points).point], n * m - len(i)
+
+
+def plan_frame(surface: Surface) -> np.ndarray:
+    """Unit vectors along, across and up (3, 3) of the plan in which grids lie; headings count from the first."""
+    up = _upward(surface)
+    along = heading_frame(up, None)
+    return np.stack([along, np.cross(up, along), up])
 
 
 def _upward(surface: Surface) -> np.ndarray:

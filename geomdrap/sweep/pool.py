@@ -7,7 +7,10 @@ import os
 import pickle
 import signal
 import sys
+from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Protocol
 
 from geomdrap.errors import SweepError
@@ -89,14 +92,9 @@ class LocalPool:
         context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
         if "forkserver" in methods:
             context.set_forkserver_preload([__name__])
-        unset = [name for name in ONE_THREAD if name not in os.environ]
-        os.environ.update(dict.fromkeys(unset, "1"))
-        try:
+        with _environment_of_workers():
             executor = ProcessPoolExecutor(self.workers, context, _begin, (plugin_files(self.job), self.blob))
             executor.submit(_ready)  # starts the workers
-        finally:
-            for name in unset:
-                del os.environ[name]
         return executor
 
     def submit(self, case: Case) -> Future[Row]:
@@ -119,6 +117,23 @@ class LocalPool:
     def close(self) -> None:
         """Drop what has not begun; what has is waited for, as it takes no time to speak of."""
         self.executor.shutdown(wait=True, cancel_futures=True)
+
+
+@contextmanager
+def _environment_of_workers() -> Iterator[None]:
+    """One thread each, and this very package: the server does not know where this process found it."""
+    before = {name: os.environ.get(name) for name in (*ONE_THREAD, "PYTHONPATH")}
+    os.environ.update({name: "1" for name in ONE_THREAD if before[name] is None})
+    here = str(Path(__file__).resolve().parents[2])
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (here, before["PYTHONPATH"])))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
 
 
 def plugin_modules(job: Job) -> tuple[str, ...]:
