@@ -16,7 +16,7 @@ from geomdrap.cli.options import (
     quiet_option,
     reading_options,
 )
-from geomdrap.cli.sweeping import SWEEP_OUTPUTS, lay_options, place_options, rank_options
+from geomdrap.cli.sweeping import SWEEP_OUTPUTS, lay_options, objective_option, place_options, resume_option
 from geomdrap.cli.values import Names
 
 
@@ -39,9 +39,16 @@ from geomdrap.cli.values import Names
 @lay_options
 @cloth_options
 @effect_options
-@rank_options
+@objective_option
+@click.option(
+    "--pareto",
+    metavar="NAME,NAME,...",
+    default="p95-shear,coverage,blank-area",
+    show_default=True,
+    help="Criteria between which the best compromises are marked.",
+)
 @place_options
-@click.option("--resume", is_flag=True, help="Go on with the rows that the folder holds already.")
+@resume_option
 @reading_options
 @folder_option("sweep", "Folder for the result files; it is made if it is missing.")
 @click.option(
@@ -57,6 +64,7 @@ from geomdrap.cli.values import Names
 def sweep(
     angles: str,
     origins: tuple[str, ...],
+    pareto: str,
     resume: bool,
     folder: Path,
     outputs: tuple[str, ...],
@@ -80,17 +88,24 @@ def sweep(
     from geomdrap.cli.messages import print_json, say
     from geomdrap.cli.progress import Progress
     from geomdrap.cli.sweep_summary import summary
-    from geomdrap.cli.sweeping import check_folder, prepare, run_recorded
+    from geomdrap.cli.sweeping import check_folder, prepare, recorded
     from geomdrap.export.sweep_json import as_dict
     from geomdrap.export.sweep_outputs import write_sweep
-    from geomdrap.sweep import cases_of, locate_origins, parse_angles
+    from geomdrap.sweep import cases_of, locate_origins, parse_angles, run
+    from geomdrap.sweep.objective import parse_criteria
 
     check_folder(folder, outputs)
-    headings = parse_angles(angles)
+    headings, criteria = parse_angles(angles), parse_criteria(pareto)
     with Progress(quiet) as progress:
         ready = prepare(progress, quiet, **asked)
         places, notes = locate_origins(ready.job.surface, origins or ("centroid",), ready.job.pitch, ready.project)
-        result = run_recorded(progress, ready, cases_of(places, headings), folder if outputs else None, resume)
+        cases = cases_of(places, headings)
+        progress.step("Sweeping")
+        with recorded(progress, ready, cases, folder if outputs else None, resume) as running:
+            result = run(
+                ready.job, cases, ready.objective, criteria=criteria,
+                pool=running.pool, done=running.earlier, on_row=running.take,
+            )  # fmt: skip
         progress.step("Draping the best")
         best = result.draped_best()
         progress.step("Writing")

@@ -26,7 +26,7 @@ def _lines(sweep: Sweep, files: Mapping[str, Path]) -> Iterator[str]:
     yield f"{HEAD}  [°, mm, %, mm²]"
     front = {row.key for row in sweep.front}
     for rank, row in enumerate(ranked[:SHOWN], 1):
-        yield f"{rank:4d}{'*' if row.key in front else ' '} {_cells(row)}"
+        yield f"{rank:4d}{'*' if row.key in front else ' '} {cells(row)}"
     if len(ranked) > SHOWN:
         yield f"      ... and {len(ranked) - SHOWN} more"
     yield f"* {len(front)} cases that none beats in one of {', '.join(sweep.criteria)} and equals in the rest"
@@ -36,7 +36,8 @@ def _lines(sweep: Sweep, files: Mapping[str, Path]) -> Iterator[str]:
         yield f"files: {', '.join(str(path) for path in files.values())}"
 
 
-def _cells(row: Row) -> str:
+def cells(row: Row) -> str:
+    """The numbers of a row under ``HEAD``, without the rank."""
     where = "(" + ", ".join(f"{round(x, 1) + 0.0:.1f}" for x in row.origin) + ")"
     return (
         f"{row.angle:6.4g}  {where:<26}{row.max_shear:9.2f}{row.p95_shear:8.2f}{100 * row.over_limit:8.2f}"

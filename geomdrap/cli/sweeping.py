@@ -15,7 +15,7 @@ from geomdrap.cli.values import Direction
 
 if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
-    from geomdrap.sweep import Job, Row, Sweep
+    from geomdrap.sweep import Job, Row
     from geomdrap.sweep.case import Case
     from geomdrap.sweep.record import Record
 
@@ -43,27 +43,21 @@ def lay_options(function: F) -> F:
     return function
 
 
-def rank_options(function: F) -> F:
-    """Add what makes a drape good: --objective, --pareto."""
-    for option in (
-        click.option(
-            "--pareto",
-            metavar="NAME,NAME,...",
-            default="p95-shear,coverage,blank-area",
-            show_default=True,
-            help="Criteria between which the best compromises are marked.",
-        ),
-        click.option(
-            "--objective",
-            metavar="NAME|NAME=WEIGHT,...",
-            default="p95-shear",
-            show_default=True,
-            help="What is to be small: max-shear, p95-shear, mean-shear [°], over-limit, waste [%], fabric-area, "
-            "blank-area [mm²], coverage (the bare per cent of the part), or a weighted sum.",
-        ),
-    ):
-        function = option(function)
-    return function
+def objective_option(function: F) -> F:
+    """Add --objective, what makes a drape good."""
+    return click.option(
+        "--objective",
+        metavar="NAME|NAME=WEIGHT,...",
+        default="max-shear",
+        show_default=True,
+        help="What is to be small: max-shear, p95-shear, mean-shear [°], over-limit, waste [%], fabric-area, "
+        "blank-area [mm²], coverage (the bare per cent of the part), or a weighted sum.",
+    )(function)
+
+
+def resume_option(function: F) -> F:
+    """Add --resume."""
+    return click.option("--resume", is_flag=True, help="Go on with the rows that the folder holds already.")(function)
 
 
 def place_options(function: F) -> F:
@@ -92,7 +86,6 @@ class Prepared(NamedTuple):
     job: Job
     project: bool
     objective: str
-    criteria: tuple[str, ...]
     jobs: int
     scheduler: str | None
 
@@ -132,7 +125,6 @@ def prepare(
     model: Path | None,
     plugins: tuple[Path, ...],
     objective: str,
-    pareto: str,
     jobs: int | None,
     scheduler: str | None,
 ) -> Prepared:
@@ -141,11 +133,7 @@ def prepare(
     from geomdrap.cli.acting import effects_of
     from geomdrap.cli.progress import announce_compilation
     from geomdrap.sweep import Job, Objective
-    from geomdrap.sweep.objective import require_criterion
 
-    criteria = tuple(name.strip() for name in pareto.split(","))
-    for name in criteria:
-        require_criterion(name, f"--pareto {pareto!r}")
     Objective.parse(objective)
     effects = tuple(effects_of(effect_texts, model, plugins))
     progress.step("Reading")
@@ -154,40 +142,44 @@ def prepare(
     announce_compilation(quiet)
     reach = (blank[0] / 2, blank[1] / 2) if blank else None
     job = Job(surface, pitch, reach, limit_angle, effects, reference)
-    return Prepared(job, project, objective, criteria, jobs or cores(), scheduler)
+    return Prepared(job, project, objective, jobs or cores(), scheduler)
 
 
-def run_recorded(
-    progress: Progress, ready: Prepared, cases: Sequence[Case], folder: Path | None, resume: bool = False
-) -> Sweep:
-    """Run the cases, rows going to a file of the folder as they come. Ctrl-C says what is in it."""
-    from geomdrap.sweep import run
+class Running(NamedTuple):
+    """A run: where its cases are draped, the rows that there are, and what takes new ones."""
+
+    pool: Any
+    earlier: tuple[Row, ...]
+    take: Counter
+
+
+@contextmanager
+def recorded(
+    progress: Progress, ready: Prepared, cases: Sequence[Case], folder: Path | None, resume: bool, more: int = 0
+) -> Iterator[Running]:
+    """Rows of the cases, and of up to ``more``, go to a file as they come; Ctrl-C says what it holds."""
     from geomdrap.sweep.record import FILE, Record, read_record
 
     earlier = read_record(folder / FILE, ready.job) if folder and resume else ()
     known = {row.key for row in earlier}
     done = sum((case.origin, case.angle) in known for case in cases)
-    record = Record(folder / FILE, ready.job, earlier) if folder else None
-    progress.step("Sweeping")
-    count = Counter(progress, len(cases), done, record)
-    try:
-        with ready.pool(len(cases) - done) as pool:
-            return run(
-                ready.job, cases, ready.objective,
-                criteria=ready.criteria, pool=pool, done=earlier, on_row=count,
-            )  # fmt: skip
-    except KeyboardInterrupt:
-        raise KeyboardInterrupt(count.interrupted()) from None
-    finally:
-        if record:
-            record.close()
+    with ready.pool(len(cases) - done + more) as pool:
+        record = Record(folder / FILE, ready.job, earlier) if folder else None
+        count = Counter(progress, len(cases) + more, done, record, "at most " if more else "")
+        try:
+            yield Running(pool, earlier, count)
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(count.interrupted()) from None
+        finally:
+            if record:
+                record.close()
 
 
 class Counter:
     """Writes rows down as they come, counts them, and says how long the rest will take."""
 
-    def __init__(self, progress: Progress, total: int, done: int, record: Record | None):
-        self.progress, self.total, self.done, self.record = progress, total, done, record
+    def __init__(self, progress: Progress, total: int, done: int, record: Record | None, at_most: str = ""):
+        self.progress, self.total, self.done, self.record, self.at_most = progress, total, done, record, at_most
         self.before, self.start = done, time.monotonic()
 
     def __call__(self, row: Row) -> None:
@@ -197,7 +189,7 @@ class Counter:
         self.done += 1
         each = (time.monotonic() - self.start) / (self.done - self.before)
         left = duration(each * (self.total - self.done))
-        self.progress.share(self.done / self.total, f"{self.done} of {self.total} cases, {left} left")
+        self.progress.share(self.done / self.total, f"{self.done} of {self.total} cases, {self.at_most}{left} left")
 
     def interrupted(self) -> str:
         """What there is after Ctrl-C."""

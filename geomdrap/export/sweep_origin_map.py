@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,8 +25,8 @@ HALF = 11.0
 """Half the length of the bar that shows a heading, pixels."""
 
 
-def draw_origins(figure: Any, box: Box, sweep: Sweep) -> None:
-    """The map in a box given in inches, with its colour bar."""
+def draw_origins(figure: Any, box: Box, sweep: Sweep, way: Sequence[Row] = ()) -> None:
+    """The map in a box given in inches, with its colour bar; ``way`` are the rows of a search, drawn as a line."""
     inside = box.inset(*AROUND)
     axes = place(figure, inside)
     columns, rows = round(inside.width * DOTS), round(inside.height * DOTS)
@@ -33,6 +34,9 @@ def draw_origins(figure: Any, box: Box, sweep: Sweep) -> None:
     axes.imshow(_part(sweep.job.surface, viewport), extent=(0, columns, rows, 0), aspect="auto")
     axes.set(xlim=(0, columns), ylim=(rows, 0))
     axes.set_axis_off()
+    if len(way) > 1:
+        steps = viewport.pixels(np.array([row.origin for row in way]))[:, :2]
+        axes.plot(*steps.T, color=palette.HIGH, lw=1.4, marker="o", ms=2.5, zorder=2)
     best = best_of_origins(sweep)
     score = np.array([sweep.objective.score(row) for row in best])
     at = viewport.pixels(np.array([row.origin for row in best]))[:, :2]
@@ -43,7 +47,10 @@ def draw_origins(figure: Any, box: Box, sweep: Sweep) -> None:
     first = int(np.argmin(score))
     axes.scatter(*at[first], s=330, facecolors="none", edgecolors=palette.HIGH, linewidths=2.2, zorder=5)
     axes.set_title("Origins: score and warp of the best heading there", fontsize=9, loc="left", color=palette.INK)
-    _draw_bar(figure, box, points, f"{sweep.objective}, with what is bare; red ring: the best")
+    words = (
+        f"{sweep.objective}, with what is bare; red ring: the best{', line: the way there' if len(way) > 1 else ''}"
+    )
+    _draw_bar(figure, box, points, words)
 
 
 def best_of_origins(sweep: Sweep) -> list[Row]:

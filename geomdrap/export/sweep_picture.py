@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ from geomdrap.export.sweep_origin_map import draw_origins
 from geomdrap.export.whole import write_whole
 
 if TYPE_CHECKING:
-    from geomdrap.sweep import Sweep
+    from geomdrap.sweep import Row, Sweep
 
 MARGIN = 0.35
 HEADER = 0.85
@@ -24,16 +25,19 @@ MAP = 6.6
 """Width of the map, inch."""
 
 
-def write(sweep: Sweep, path: Path) -> None:
-    """Write the picture of a sweep as a PNG; no date or path in it. Raises GeomdrapError if it cannot be."""
+def write(sweep: Sweep, path: Path, way: Sequence[Row] = ()) -> None:
+    """Write the picture of a sweep as a PNG, with the ``way`` of a search if there was one; no date or path in it.
+
+    Raises GeomdrapError if it cannot be written.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     buffer = io.BytesIO()
-    FigureCanvasAgg(draw(sweep)).print_png(buffer, metadata={"Software": None})
+    FigureCanvasAgg(draw(sweep, way)).print_png(buffer, metadata={"Software": None})
     write_whole(path, buffer.getvalue())
 
 
-def draw(sweep: Sweep) -> Any:
+def draw(sweep: Sweep, way: Sequence[Row] = ()) -> Any:
     """The picture as a matplotlib Figure: a header, diagrams over the heading, a map of the origins."""
     from matplotlib.figure import Figure
 
@@ -48,7 +52,7 @@ def draw(sweep: Sweep) -> Any:
     if names:
         draw_angles(figure, Box(MARGIN, MARGIN, left, height), sweep, names)
     if right:
-        draw_origins(figure, Box(MARGIN + left, MARGIN, right, height), sweep)
+        draw_origins(figure, Box(MARGIN + left, MARGIN, right, height), sweep, way)
     return figure
 
 

@@ -3,6 +3,7 @@
 from geomdrap.sweep.angles import parse_angles
 from geomdrap.sweep.case import Case, Job
 from geomdrap.sweep.objective import CRITERIA, Objective
+from geomdrap.sweep.optimize import Optimum, optimize
 from geomdrap.sweep.origins import locate_origins
 from geomdrap.sweep.ranking import ranked
 from geomdrap.sweep.row import Row
@@ -13,10 +14,12 @@ __all__ = [
     "Case",
     "Job",
     "Objective",
+    "Optimum",
     "Row",
     "Sweep",
     "cases_of",
     "locate_origins",
+    "optimize",
     "parse_angles",
     "ranked",
     "run",

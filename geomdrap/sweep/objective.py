@@ -46,6 +46,7 @@ CRITERIA = {
     "blank-area": _area("rectangular blank", lambda row: row.blank_area),
     "waste": _plain("%", "waste of the blank", lambda row: 100.0 * row.waste),
 }
+DEFAULT = "max-shear"
 PARETO = ("p95-shear", "coverage", "blank-area")
 
 
@@ -93,6 +94,14 @@ def _weight(part: str, whole: str) -> tuple[str, float]:
     if not (math.isfinite(weight) and weight > 0.0):
         raise SweepError(f"objective {whole!r}: {part!r} is not NAME=WEIGHT with a positive weight")
     return name, weight
+
+
+def parse_criteria(text: str) -> tuple[str, ...]:
+    """Names of criteria with commas between. Raises SweepError for unknown ones."""
+    names = tuple(name.strip() for name in text.split(","))
+    for name in names:
+        require_criterion(name, f"criteria {text!r}")
+    return names
 
 
 def require_criterion(name: str, where: str) -> None:

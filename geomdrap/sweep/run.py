@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from geomdrap.errors import SweepError
 from geomdrap.sweep.case import Case, Job
-from geomdrap.sweep.objective import PARETO, Objective, require_criterion
+from geomdrap.sweep.objective import DEFAULT, PARETO, Objective, parse_criteria
 from geomdrap.sweep.pool import LocalPool, Pool, ThroughExecutor
 from geomdrap.sweep.ranking import pareto_front, ranked
 from geomdrap.sweep.row import Row, failed
@@ -55,7 +55,7 @@ class Sweep:
 def run(
     job: Job,
     cases: Sequence[Case],
-    objective: str = "p95-shear",
+    objective: str = DEFAULT,
     *,
     criteria: Sequence[str] = PARETO,
     jobs: int = 1,
@@ -70,9 +70,7 @@ def run(
     run: their cases are not draped again. ``on_row`` gets each new row as it comes.
     Raises SweepError where there is no case, or an objective or criterion is unknown.
     """
-    wanted = Objective.parse(objective)
-    for name in criteria:
-        require_criterion(name, f"criteria {','.join(criteria)!r}")
+    wanted, names = Objective.parse(objective), parse_criteria(",".join(criteria))
     cases = list(dict.fromkeys(cases))
     if not cases:
         raise SweepError("there is no case: give at least one origin and one angle")
@@ -82,7 +80,7 @@ def run(
         for row in rows_of(place, left):
             on_row(row)
             found[row.key] = row
-    return Sweep(job, tuple(found[case.origin, case.angle] for case in cases), wanted, tuple(criteria))
+    return Sweep(job, tuple(found[case.origin, case.angle] for case in cases), wanted, names)
 
 
 def cases_of(origins: Sequence[str | tuple[float, float, float]], angles: Sequence[float]) -> list[Case]:

@@ -48,7 +48,19 @@ def _error(result: Result) -> str:
 
 def test_rows_are_ranked_in_the_json_and_the_table(run: Callable[..., Result], tmp_path: Path) -> None:
     result = run(
-        "sweep", "saddle.stl", "--angles", "0:90:45", "--origins", "grid:1x2", "-j", 1, "--pitch", 12, "--json"
+        "sweep",
+        "saddle.stl",
+        "--angles",
+        "0:90:45",
+        "--origins",
+        "grid:1x2",
+        "-j",
+        1,
+        "--pitch",
+        12,
+        "--json",
+        "--objective",
+        "p95-shear",
     )
     assert result.exit_code == 0
     document = json.loads(result.stdout)
@@ -86,12 +98,12 @@ def test_resume_drapes_only_what_is_missing(run: Callable[..., Result], tmp_path
     asked = ("-j", 1, "--pitch", 12, "--outputs", "json")
     run("sweep", "saddle.stl", "--angles", "0:60:30", *asked)
     rows = (tmp_path / "sweep" / "rows.jsonl").read_text().splitlines()
-    made_up = json.loads(rows[1]) | {"p95_shear": 0.125}  # a row that no drape would give
+    made_up = json.loads(rows[1]) | {"max_shear": 0.125}  # a row that no drape would give
     (tmp_path / "sweep" / "rows.jsonl").write_text("\n".join([rows[0], json.dumps(made_up), *rows[2:]]) + "\n")
     result = run("sweep", "saddle.stl", "--angles", "0:90:30", *asked, "--resume", "--json")
     found = json.loads(result.stdout)["rows"]
     assert len(found) == 4
-    assert found[0]["p95_shear"] == 0.125
+    assert found[0]["max_shear"] == 0.125
     assert len((tmp_path / "sweep" / "rows.jsonl").read_text().splitlines()) == 5
 
 
