@@ -17,6 +17,7 @@ _HOMES = {
     "GeomdrapError": "errors",
     "MeasurementError": "errors",
     "SurfaceError": "errors",
+    "SweepError": "errors",
     "Surface": "surface",
     "read_surface": "surface",
     "shapes": "surface",
@@ -35,7 +36,7 @@ _HOMES = {
     "evaluate": "fields",
 }
 
-_PACKAGES = ("effects",)
+_PACKAGES = ("effects", "sweep")
 
 __all__ = [
     "DrapeError",
@@ -49,6 +50,7 @@ __all__ = [
     "Parameter",
     "Surface",
     "SurfaceError",
+    "SweepError",
     "__version__",
     "compare",
     "diagnose",
@@ -60,6 +62,7 @@ __all__ = [
     "read_setup",
     "read_surface",
     "shapes",
+    "sweep",
     "trace",
 ]
 

@@ -21,3 +21,7 @@ class MeasurementError(GeomdrapError):
 
 class EffectError(GeomdrapError):
     """An effect is unknown, its parameters are not what it takes, or it cannot act on this part."""
+
+
+class SweepError(GeomdrapError):
+    """The cases of a sweep cannot be read, or cannot be run where they should."""

@@ -9,6 +9,8 @@ from geomdrap.cli.lazy import LazyGroup
 
 COMMANDS = {
     "drape": "Drape a part: net, shear map, flat pattern, statistics.",
+    "sweep": "Drape a part from many origins and headings, and rank them.",
+    "optimize": "Find the origin and the heading with the best drape.",
     "compare": "Hold a drape against measured points: where it fails, and by how much.",
     "diagnose": "Say which physical effect a drape lacks, by measured points.",
     "improve": "Add missing effects to a drape until it agrees with measured points.",

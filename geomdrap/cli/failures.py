@@ -32,7 +32,7 @@ def exit_code_of(error: BaseException) -> int:
 
 def _meaning(error: BaseException) -> tuple[int, str]:
     if isinstance(error, (click.Abort, KeyboardInterrupt)):
-        return INTERRUPTED, "interrupted; nothing was written"
+        return INTERRUPTED, str(error.__cause__ or error) or "interrupted; nothing was written"
     if isinstance(error, click.ClickException):
         return BAD_INPUT, error.format_message().rstrip(".") + _where_to_look(error)
     if isinstance(error, GeomdrapError):

@@ -50,8 +50,8 @@ class Progress:
         self._start = time.monotonic()
         self._count(PATIENCE)
 
-    def share(self, done: float) -> None:
-        """Take the share of the step that is done, 0 to 1. Cheap enough to be called often."""
+    def share(self, done: float, words: str = "") -> None:
+        """Take the share of the step that is done, 0 to 1, and words on it. Cheap enough to be called often."""
         if not self.enabled:
             return
         now = time.monotonic()
@@ -60,7 +60,8 @@ class Progress:
         self._drawn_at = now
         self._stop_counting()
         filled = round(_WIDTH * min(max(done, 0.0), 1.0))
-        self._draw(f"{self._name} [{'#' * filled}{'.' * (_WIDTH - filled)}] {100 * done:3.0f} %")
+        bar = "#" * filled + "." * (_WIDTH - filled)
+        self._draw(f"{self._name} [{bar}] {100 * done:3.0f} %{words and ', '}{words}")
 
     def _draw(self, text: str) -> None:
         self._drawn = True

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from geomdrap.fishnet import Net
+    from geomdrap.surface import Surface
 
 FINE = 1.5  # cells: longest edge of a piece of a facet
 REFUSED = np.zeros(16, np.bool_)
@@ -50,11 +52,7 @@ def trim(net: Net, progress: Callable[[float], None] = lambda _: None) -> Trimme
 
     ``progress`` is called with the share done, 0 to 1.
     """
-    part = net.surface
-    require_few_pieces(part, FINE * net.pitch)
-    mesh = refine(part.points, part.triangles, part.neighbours, part.neighbour_edge, FINE * net.pitch)
-    corners = mesh.points[mesh.triangles]
-    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    mesh, area = _pieces(net.surface, FINE * net.pitch)
     if min(net.lattice_valid.shape) == 0:
         return _all_bare(mesh, area, Status.TOO_NARROW)
     progress(0.25)
@@ -71,6 +69,23 @@ def trim(net: Net, progress: Callable[[float], None] = lambda _: None) -> Trimme
         kind = np.where(share > 0.0, kind, 0).astype(np.uint8)
     at[kind == 0], tangent[kind == 0] = np.nan, np.nan
     return Trimmed(mesh, at, kind, tangent / net.pitch, area, share, _spread_reasons(reason, mesh.neighbours))
+
+
+_SPLIT: WeakKeyDictionary[Surface, tuple[float, Refined, np.ndarray]] = WeakKeyDictionary()
+
+
+def _pieces(part: Surface, longest: float) -> tuple[Refined, np.ndarray]:
+    """The part in pieces of edges up to ``longest`` mm, and their areas (m,) mm²; kept until asked for another.
+
+    Raises DrapeError where they would be too many.
+    """
+    if part not in _SPLIT or _SPLIT[part][0] != longest:
+        require_few_pieces(part, longest)
+        mesh = refine(part.points, part.triangles, part.neighbours, part.neighbour_edge, longest)
+        corners = mesh.points[mesh.triangles]
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        _SPLIT[part] = longest, mesh, 0.5 * np.linalg.norm(across, axis=1)
+    return _SPLIT[part][1:]
 
 
 def _spread(net: Net, mesh: Refined) -> tuple[np.ndarray, ...]:
