@@ -21,3 +21,7 @@ class MeasurementError(GeomdrapError):
 
 class EffectError(GeomdrapError):
     """An effect is unknown, its parameters are not what it takes, or it cannot act on this part."""
+
+
+class FormingError(GeomdrapError):
+    """A material, a mesh or a run of the mechanical model is not as it must be, or the run did not end well."""
