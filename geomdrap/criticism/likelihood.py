@@ -149,6 +149,9 @@ class Judge:
                 (length + 1, size, kind),
                 (length - 1, size, kind),
                 (length, size, other),
+                # a larger scatter over a greater length shears as much: the likeliest lie along a slanting ridge
+                (length + 1, size + 1, kind),
+                (length - 1, size - 1, kind),
             ):
                 if not (0 <= new_length < len(self.lengths) and 0 <= new_size < len(SIZES)):
                     continue
