@@ -39,7 +39,8 @@ class FeMesh:
     ``corners`` (m, 4) rows of ``points``, -1 for the fourth corner of triangles; ``material_angle`` (m,) degrees from
     the side 1-2 to the element's own material axis, counter-clockwise about its normal; ``material_axis`` (m, 3) if
     that axis is instead the projection of a direction, else NaN. ``is_given``: read from ``source``, a file of the
-    user's own, which knows nodes and elements; ``deck``: its text, where a format writes that again.
+    user's own, which knows nodes and elements; ``deck``: its text, where a format writes that again; ``others``:
+    types of elements in the file that are no shells, and are not among these.
     """
 
     source: str
@@ -52,6 +53,7 @@ class FeMesh:
     material_axis: Floats
     is_given: bool = True
     deck: Deck | None = None
+    others: tuple[str, ...] = ()
 
     @property
     def is_quad(self) -> NDArray[np.bool_]:
@@ -123,7 +125,7 @@ def mesh_of_part(surface: Surface) -> FeMesh:
 
 
 def assemble(name: str, nodes: Nodes, elements: Elements, **more: Any) -> FeMesh:
-    """A mesh from what a file holds; ``more`` are ``material_angle``, ``material_axis`` and ``deck``.
+    """A mesh from what a file holds; ``more`` are its other fields, if it has them.
 
     Raises GeomdrapError where there are no shells, or one is there twice, names a node that is not there, or has no
     area.
@@ -152,6 +154,7 @@ def assemble(name: str, nodes: Nodes, elements: Elements, **more: Any) -> FeMesh
         material_angle=more.get("material_angle", np.zeros(m)),
         material_axis=more.get("material_axis", np.full((m, 3), np.nan)),
         deck=more.get("deck"),
+        others=tuple(sorted(more.get("others", ()))),
     )
     flat = np.abs(mesh.normals).sum(axis=1) == 0.0
     if flat.any():

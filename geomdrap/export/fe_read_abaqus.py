@@ -26,6 +26,7 @@ REFUSED = {
 def read(name: str, lines: Sequence[str]) -> FeMesh:
     """The nodes and shells of the file. Raises GeomdrapError."""
     parts: list[tuple[Nodes, Elements]] = [({}, [])]  # numbers are a part's own
+    others = set()
     for keyword, options, data in blocks(lines):
         refuse(name, keyword, options, data)
         kind = SHELL.match(options.get("TYPE", "").upper())
@@ -35,10 +36,12 @@ def read(name: str, lines: Sequence[str]) -> FeMesh:
             parts[-1][0].update(read_nodes(name, data))
         elif keyword == "ELEMENT" and kind is not None:
             parts[-1][1].extend(read_elements(name, kind[2], data))
+        elif keyword == "ELEMENT":
+            others.add(options.get("TYPE", "no type").upper())
     with_shells = [part for part in parts if part[1]]
     if len(with_shells) > 1:
         raise GeomdrapError(f"{name} holds {len(with_shells)} parts with shells; write one part to a file of its own")
-    return assemble(name, *(with_shells[0] if with_shells else parts[0]))
+    return assemble(name, *(with_shells[0] if with_shells else parts[0]), others=others)
 
 
 def blocks(lines: Sequence[str]) -> Iterator[tuple[str, dict[str, str], list[tuple[int, str]]]]:

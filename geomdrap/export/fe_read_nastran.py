@@ -32,6 +32,10 @@ SHELLS = {
 }
 
 
+SOLIDS = ("CTETRA", "CPYRAM", "CPYRA", "CPENTA", "CHEXA", "CTRIAX", "CTRIAX6", "CQUADX", "CSHEAR", "CTRIA2", "CQUAD")
+"""Elements that could be taken for the laminate, and are not read."""
+
+
 class Card(NamedTuple):
     """A card: name, fields after it without blanks around, first and last line (from 0)."""
 
@@ -50,11 +54,14 @@ def read(name: str, lines: Sequence[str]) -> FeMesh:
     nodes: Nodes = {}
     shells: list[Card] = []
     systems: dict[int, Card] = {}
+    others = set()
     for card in cards(name, lines):
         if card.name == "GRID":
             nodes.update([read_grid(name, card)])
         elif card.name in SHELLS:
             shells.append(card)
+        elif card.name in SOLIDS:
+            others.add(card.name)
         elif card.name == "CORD2R":
             systems[whole(card.field(0), name, card.first + 1)] = card
         elif card.name == "INCLUDE":
@@ -66,6 +73,7 @@ def read(name: str, lines: Sequence[str]) -> FeMesh:
         [read_shell(name, card) for card in shells],
         material_angle=angle,
         material_axis=axis,
+        others=others,
         deck=Deck(
             tuple(lines),
             tuple((card.first, card.last) for card in shells),

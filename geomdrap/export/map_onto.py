@@ -61,8 +61,11 @@ class ElementPly:
         return angle_between(laid_into(along, normals), direction, normals)
 
     def notes(self) -> list[str]:
-        """Sentences on what is doubtful: elements that have no ply, a mesh much smaller than the part."""
+        """Sentences on what is doubtful: elements without ply, a mesh much smaller than the part."""
         notes = []
+        if self.mesh.others:
+            kinds = ", ".join(self.mesh.others)
+            notes.append(f"{self.mesh.source} has elements that are no shells ({kinds}), which carry no ply")
         if self.relative_size < SMALL:
             notes.append(f"{self.mesh.source} has {self.relative_size:.2g} of the part's size; is it in mm?")
         without = int((~self.is_draped).sum())

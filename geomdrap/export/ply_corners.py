@@ -48,7 +48,8 @@ class PlyCorners:
 
     ``triangles`` (m, 3) rows of the points of ``result.trimmed.mesh``; ``at`` (m, 3, 2) mm in the fabric, within
     ``fabric``; ``shear`` (m, 3) degrees; ``normals`` (m, 3, 3); ``bare`` (m,) and ``reason`` (m,), a `Status`.
-    ``at`` and ``shear`` mean nothing where bare.
+    ``at`` and ``shear`` mean nothing where bare. ``cut`` (k,): those that are pieces of a facet of the part,
+    ``shares`` (k, 3, 3) where their corners lie between its corners.
     """
 
     fabric: Box
@@ -58,6 +59,8 @@ class PlyCorners:
     normals: Floats
     bare: NDArray[np.bool_]
     reason: Array
+    cut: Array
+    shares: Floats
 
     def places(self) -> Array:
         """Numbers (m, 3), equal for corners of one vertex that lie at one place of the fabric, or are bare alike."""
@@ -76,16 +79,21 @@ class PlyCorners:
 
 def ply_corners(result: Drape) -> PlyCorners:
     """The corners of a drape's facets."""
-    trimmed = result.trimmed
-    bare = trimmed.kind == 0
+    trimmed, surface = result.trimmed, result.net.surface
+    mesh, bare = trimmed.mesh, trimmed.kind == 0
+    owner = surface.triangles[mesh.parent]
+    cut = np.flatnonzero((mesh.triangles != owner).any(axis=1))
+    shares = barycentric(mesh.points[mesh.triangles[cut]], surface.points[owner[cut]])
     made = PlyCorners(
         fabric=Box.around(trimmed.at[~bare].reshape(-1, 2)),
-        triangles=trimmed.mesh.triangles,
+        triangles=mesh.triangles,
         at=trimmed.at,
-        shear=np.zeros(trimmed.mesh.triangles.shape),
-        normals=piece_normals(result),
+        shear=np.zeros(mesh.triangles.shape),
+        normals=piece_normals(result, cut, shares),
         bare=bare,
         reason=trimmed.reason.astype(np.int64),
+        cut=cut,
+        shares=shares,
     )
     return replace(made, shear=at_corners(piece_shear(result), trimmed.area, made.places()))
 
@@ -114,27 +122,24 @@ def at_corners(values: Floats, area: Floats, group: Array) -> Floats:
     return np.asarray(field[group])
 
 
-def piece_normals(result: Drape) -> Floats:
+def piece_normals(result: Drape, cut: Array, shares: Floats) -> Floats:
     """Normals (m, 3, 3) at the corners of the facets cut to the pitch, smooth but at creases of the part."""
-    surface, mesh = result.net.surface, result.trimmed.mesh
-    of_parent = corner_normals(surface).astype(float)[mesh.parent]
-    owner = surface.triangles[mesh.parent]
-    cut = np.flatnonzero((mesh.triangles != owner).any(axis=1))
-    if len(cut):
-        share = barycentric(mesh.points[mesh.triangles[cut]], surface.points[owner[cut]])
-        of_parent[cut] = np.einsum("mcp,mpk->mck", share, of_parent[cut])
-    return np.asarray(of_parent / np.linalg.norm(of_parent, axis=2, keepdims=True))
+    normals = corner_normals(result.net.surface).astype(float)[result.trimmed.mesh.parent]
+    normals[cut] = np.einsum("mcp,mpk->mck", shares, normals[cut])
+    return np.asarray(normals / np.sqrt(np.einsum("mck,mck->mc", normals, normals))[..., None])
 
 
 def barycentric(points: Floats, triangle: Floats) -> Floats:
     """Shares (m, c, 3) of the corners of triangles (m, 3, 3) in points (m, c, 3) of their planes."""
-    a = triangle[:, :1]
-    e, f, r = triangle[:, 1:2] - a, triangle[:, 2:3] - a, points - a
-    ee, ef, ff = ((x * y).sum(axis=2) for x, y in ((e, e), (e, f), (f, f)))
-    re, rf = (r * e).sum(axis=2), (r * f).sum(axis=2)
+    a = triangle[:, 0]
+    e, f, r = triangle[:, 1] - a, triangle[:, 2] - a, points - a[:, None]
+    ee, ef, ff = (np.einsum("mk,mk->m", x, y)[:, None] for x, y in ((e, e), (e, f), (f, f)))
+    re, rf = np.einsum("mck,mk->mc", r, e), np.einsum("mck,mk->mc", r, f)
     det = ee * ff - ef * ef
-    second, third = (ff * re - ef * rf) / det, (ee * rf - ef * re) / det
-    return np.stack([1.0 - second - third, second, third], axis=2)
+    shares = np.empty((*re.shape, 3))
+    shares[..., 1], shares[..., 2] = (ff * re - ef * rf) / det, (ee * rf - ef * re) / det
+    shares[..., 0] = 1.0 - shares[..., 1] - shares[..., 2]
+    return shares
 
 
 def on_octahedron(normals: Floats) -> Array:

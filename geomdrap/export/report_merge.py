@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.export.ply_corners import Floats, PlyCorners, barycentric
+from geomdrap.export.ply_corners import Floats, PlyCorners
 from geomdrap.export.scene import corner_normals
 
 if TYPE_CHECKING:
@@ -20,17 +20,19 @@ MOST_SHEAR = 0.1
 
 
 def merged(corners: PlyCorners, result: Drape) -> PlyCorners:
-    """The same ply with those facets of the part whole on which coordinates and shear are linear, or all is bare."""
+    """The same ply with those facets of the part whole on which coordinates and shear are linear, or all is bare.
+
+    What the pieces that are left share with the facets of the part is left out of it.
+    """
     surface, mesh = result.net.surface, result.trimmed.mesh
-    owner = surface.triangles[mesh.parent]
-    cut = np.flatnonzero((mesh.triangles != owner).any(axis=1))
+    cut, m = corners.cut, len(surface.triangles)
     if not len(cut):
         return corners
-    parent, m = mesh.parent[cut], len(surface.triangles)
+    parent = mesh.parent[cut]
+    owner = surface.triangles[parent]
     values = np.concatenate([corners.at, corners.shear[..., None]], axis=2)
-    whole = at_own_corners(values[cut], mesh.triangles[cut], owner[cut], parent, m)
-    shares = barycentric(mesh.points[mesh.triangles[cut]], surface.points[owner[cut]])
-    off = np.abs(np.einsum("mcp,mpk->mck", shares, whole[parent]) - values[cut]).max(axis=1)
+    whole = at_own_corners(values[cut], mesh.triangles[cut], owner, parent, m)
+    off = np.abs(np.einsum("mcp,mpk->mck", corners.shares, whole[parent]) - values[cut]).max(axis=1)
     near = (off[:, :2].max(axis=1) <= MOST_MOVE * result.net.pitch) & (off[:, 2] <= MOST_SHEAR)
     near &= ~corners.bare[cut]
     reason = np.where(corners.bare, corners.reason, -1)[cut]
@@ -52,6 +54,8 @@ def merged(corners: PlyCorners, result: Drape) -> PlyCorners:
         normals=np.concatenate([corners.normals[~gone], of_part]),
         bare=np.concatenate([corners.bare[~gone], bare_of[back]]),
         reason=np.concatenate([corners.reason[~gone], reason_of[back]]),
+        cut=corners.cut[:0],
+        shares=corners.shares[:0],
     )
 
 

@@ -98,6 +98,7 @@ def block_of(result):
 def test_the_dxf_has_a_block_per_piece_with_the_layers_of_the_standard(result):
     document, block = block_of(result)
     assert document.dxfversion == "AC1009"
+    assert not document.audit().errors
     boundary = block.query('POLYLINE[layer=="1"]')
     assert len(boundary) == 1
     assert boundary[0].is_closed

@@ -365,6 +365,25 @@ def test_parts_without_shells_may_use_the_same_numbers(tmp_path):
     np.testing.assert_allclose(mesh.points, POINTS, atol=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("name", "text", "kinds"),
+    [
+        ("m.inp", GOOD_INP + "*ELEMENT, TYPE=C3D4\n9, 1001, 1002, 1003, 1004\n", ("C3D4",)),
+        ("m.bdf", GOOD_BDF.replace("ENDDATA", "CTETRA,9,1,1001,1002,1003,1004\nENDDATA"), ("CTETRA",)),
+        ("m.rad", radioss(POINTS, QUADS).replace("/END", "/BRICK/1\n/TETRA4/2\n/END"), ("BRICK", "TETRA4")),
+        ("m.rad", radioss(POINTS, QUADS), ()),
+    ],
+)
+def test_elements_that_are_no_shells_are_left_out_and_named(flat, tmp_path, name, text, kinds):
+    mesh = written(tmp_path, name, text)
+    assert mesh.others == kinds
+    assert len(mesh.element_ids) == len(QUADS)
+    notes = map_onto(flat, mesh).notes()
+    assert [note for note in notes if "no shells" in note] == [
+        f"{name} has elements that are no shells ({', '.join(kinds)}), which carry no ply" for _ in kinds[:1]
+    ]
+
+
 def test_numbers_too_long_for_a_field_are_refused(flat, tmp_path):
     ply = map_onto(flat, written(tmp_path, "m.inp", abaqus(POINTS, QUADS, first_element=100_000_000)))
     for module in (fe_nastran, fe_optistruct):
