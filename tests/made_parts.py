@@ -119,3 +119,32 @@ def random_starts(surface, rng, count):
     points = np.einsum("nk,nkc->nc", weights, surface.points[surface.triangles[faces]])
     turn = rng.uniform(0, 2 * np.pi, count)[:, None]
     return faces, points, np.cos(turn) * surface.e1[faces] + np.sin(turn) * surface.e2[faces]
+
+
+def open_box(edge, size=(100.0, 80.0, 60.0)):
+    """A box without its bottom, its top at half its height, in facets of about ``edge`` mm; corners are sharp."""
+    points, triangles = [], []
+    half = 0.5 * np.array(size)
+    # of each side an axis across it, which way, and the two axes along it so that it is seen from outside
+    for axis, sense, u, v in ((2, 1, 0, 1), (0, 1, 1, 2), (0, -1, 2, 1), (1, 1, 2, 0), (1, -1, 0, 2)):
+        nu, nv = round(size[u] / edge), round(size[v] / edge)
+        i, j = np.indices((nu + 1, nv + 1)).reshape(2, -1)
+        corner = np.zeros((len(i), 3))
+        corner[:, axis] = sense * half[axis]
+        corner[:, u], corner[:, v] = (i / nu * 2 - 1) * half[u], (j / nv * 2 - 1) * half[v]
+        triangles.append(sheet_triangles(corner.reshape(nu + 1, nv + 1, 3))[1] + sum(map(len, points)))
+        points.append(corner)
+    return Surface(np.vstack(points), np.vstack(triangles))
+
+
+def pan(columns=96, wall=0.25 * np.pi, fillet=15.0, depth=40.0, hole=15.0, flat=70.0):
+    """A round pan with a hole, a fillet and a conical wall, its facets long around and short up the wall."""
+    bend = fillet * wall
+    way = np.linspace(0.0, flat - hole + bend + depth, 60)[:, None]
+    turned = np.clip((way - (flat - hole)) / fillet, 0.0, wall)
+    up = np.clip(way - (flat - hole) - bend, 0.0, None)
+    radius = hole + np.minimum(way, flat - hole) + fillet * np.sin(turned) + up * np.cos(wall)
+    height = fillet * (1.0 - np.cos(turned)) + up * np.sin(wall)
+    around = np.linspace(0.0, 2.0 * np.pi, columns + 1)[None]
+    points = np.stack([radius * np.cos(around), radius * np.sin(around), height + 0.0 * around], axis=-1)
+    return Surface(*sheet_triangles(points))

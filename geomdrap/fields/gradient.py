@@ -13,6 +13,8 @@ import numpy as np
 
 from geomdrap.geodesic.compiled import inlined, kernel
 
+JUMP = 3.0  # times the differences beside it: a larger one is no slope to go on with
+BESIDE = 2  # cells: how far across its axis a slope is carried on
 AROUND = 4  # cells: how far from a point the nearest cell with a gradient is looked for
 
 
@@ -25,39 +27,67 @@ def lesser(a: float, b: float) -> float:
 
 
 @kernel
-def slope(shear: np.ndarray, i: int, j: int, di: int, dj: int) -> float:
-    """Growth per cell of ``shear`` (nu - 1, nv - 1) at cell (i, j) toward +(di, dj), NaN where nothing tells.
-
-    At the rim of the net from the differences behind it, which makes the extrapolation second order. There are three
-    of them: a jump between two cells, as behind the tip of a cone, gives two of one sign.
-    """
-    steps = np.full(6, math.nan)  # differences from cell -3 to -2, ..., 2 to 3
-    for n in range(6):
-        k, m = i + (n - 3) * di, j + (n - 3) * dj
-        if k >= 0 and m >= 0 and k + di < shear.shape[0] and m + dj < shear.shape[1]:
-            steps[n] = shear[k + di, m + dj] - shear[k, m]
-    before, after = steps[2], steps[3]
-    if math.isnan(before):
-        return after if math.isnan(after) else lesser(after, lesser(steps[4], steps[5]))
-    if math.isnan(after):
-        return lesser(before, lesser(steps[1], steps[0]))
+def limited(before: float, here: float, after: float) -> float:
+    """A difference, or where it is a jump next to those before and after it, the lesser of them."""
+    if math.isnan(here):
+        return here
+    most = JUMP * max(0.0 if math.isnan(before) else abs(before), 0.0 if math.isnan(after) else abs(after))
+    if (math.isnan(before) and math.isnan(after)) or abs(here) <= most:
+        return here
     return lesser(before, after)
 
 
 @kernel
 def shear_gradients(shear: np.ndarray) -> np.ndarray:
-    """Growth per cell along u and v (nu - 1, nv - 1, 2) of the cells' ``shear`` (nu - 1, nv - 1), NaN if unknown."""
-    out = np.full((*shear.shape, 2), math.nan)
-    for i in range(shear.shape[0]):
-        for j in range(shear.shape[1]):
-            if not math.isnan(shear[i, j]):
-                out[i, j, 0], out[i, j, 1] = slope(shear, i, j, 1, 0), slope(shear, i, j, 0, 1)
+    """Growth of the cells' ``shear`` (nu - 1, nv - 1) from each to the next, per cell: (nu, nv, 2), NaN if unknown.
+
+    ``[i, j, 0]`` is that from the middle of cell (i - 1, j) to that of (i, j), ``[i, j, 1]`` from (i, j - 1) to it:
+    what is added up on two ways comes to the same. Jumps, as behind the tip of a cone, are left out.
+    """
+    nu, nv = shear.shape
+    steps = np.full((nu + 2, nv + 2, 2), math.nan)
+    steps[2:nu + 1, 1:nv + 1, 0] = shear[1:] - shear[:-1]
+    steps[1:nu + 1, 2:nv + 1, 1] = shear[:, 1:] - shear[:, :-1]
+    out = np.full((nu + 1, nv + 1, 2), math.nan)
+    for i in range(1, nu + 1):
+        for j in range(1, nv + 1):
+            out[i - 1, j - 1, 0] = limited(steps[i - 1, j, 0], steps[i, j, 0], steps[i + 1, j, 0])
+            out[i - 1, j - 1, 1] = limited(steps[i, j - 1, 1], steps[i, j, 1], steps[i, j + 1, 1])
     return out
 
 
+@inlined
+def slope_in(gradient: np.ndarray, i: int, j: int, axis: int) -> float:
+    """Entry of ``shear_gradients``, NaN outside."""
+    return gradient[i, j, axis] if 0 <= i < gradient.shape[0] and 0 <= j < gradient.shape[1] else math.nan
+
+
 @kernel
-def slope_near(gradient: np.ndarray, i: int, j: int, axis: int) -> float:
-    """Slope along an axis in cell (i, j), or the mean of the nearest ring of cells where it is known, else 0."""
+def slope_beside(gradient: np.ndarray, i: int, j: int, axis: int) -> float:
+    """Slope along an axis at (i, j) of ``shear_gradients``, or carried on to it across that axis, NaN if far.
+
+    Across its axis a slope changes with the Gaussian curvature alone (γ_uv = -K cos γ): on a wall, not at all.
+    """
+    di, dj = axis, 1 - axis
+    for away in range(BESIDE + 1):
+        total, count = 0.0, 0
+        for sense in (-1, 1):
+            k, m = i + sense * away * di, j + sense * away * dj
+            near = slope_in(gradient, k, m, axis)
+            if math.isnan(near):
+                continue
+            next1 = slope_in(gradient, k + sense * di, m + sense * dj, axis)
+            next2 = slope_in(gradient, k + 2 * sense * di, m + 2 * sense * dj, axis)
+            change = lesser(near - next1, next1 - next2)
+            total, count = total + near + (0.0 if math.isnan(change) else away * change), count + 1
+        if count > 0:
+            return total / count
+    return math.nan
+
+
+@kernel
+def mean_of_ring(gradient: np.ndarray, i: int, j: int, axis: int) -> float:
+    """Mean slope along an axis of the nearest ring around (i, j) where it is known, 0 if that is far."""
     for ring in range(AROUND + 1):
         total, count = 0.0, 0
         for k in range(max(i - ring, 0), min(i + ring + 1, gradient.shape[0])):
@@ -69,11 +99,41 @@ def slope_near(gradient: np.ndarray, i: int, j: int, axis: int) -> float:
     return 0.0
 
 
+@kernel
+def slope_near(gradient: np.ndarray, i: int, j: int, axis: int) -> float:
+    """``slope_beside``, or beyond the net the least of the three slopes before its rim, off its corners a mean.
+
+    There are three of them: a jump between two cells, as behind the tip of a cone, gives two of one sign.
+    """
+    here = slope_beside(gradient, i, j, axis)
+    if not math.isnan(here):
+        return here
+    for away in range(1, AROUND + 1):
+        total, count = 0.0, 0
+        for sense in (-1, 1):
+            least = math.nan
+            for n in range(3):
+                step = sense * (away + n)
+                k, m = (i + step, j) if axis == 0 else (i, j + step)
+                found = slope_beside(gradient, k, m, axis)
+                if n == 0 and math.isnan(found):
+                    break
+                least = found if n == 0 else lesser(least, found)
+            if not math.isnan(least):
+                total, count = total + least, count + 1
+        if count > 0:
+            return total / count
+    return mean_of_ring(gradient, i, j, axis)
+
+
 @inlined
 def gradient_near(gradient: np.ndarray, p: float, q: float) -> tuple[float, float]:
-    """The gradient (2,) at or nearest to (p, q)."""
+    """The gradient (2,) of the shear at or nearest to (p, q), of ``shear_gradients``."""
     i, j = int(math.floor(p)), int(math.floor(q))
-    return slope_near(gradient, i, j, 0), slope_near(gradient, i, j, 1)
+    return (
+        slope_near(gradient, int(math.floor(p + 0.5)), j, 0),
+        slope_near(gradient, i, int(math.floor(q + 0.5)), 1),
+    )
 
 
 @kernel
@@ -136,8 +196,8 @@ def bend_cells(at: np.ndarray, yarns: np.ndarray, gradient: np.ndarray) -> None:
     for v in range(len(at)):
         if math.isnan(at[v, 0]):
             continue
-        i = min(max(int(math.floor(at[v, 0])), 0), gradient.shape[0] - 1)
-        j = min(max(int(math.floor(at[v, 1])), 0), gradient.shape[1] - 1)
+        i = min(max(int(math.floor(at[v, 0])), 0), gradient.shape[0] - 2)
+        j = min(max(int(math.floor(at[v, 1])), 0), gradient.shape[1] - 2)
         s, t = at[v, 0] - i, at[v, 1] - j
         k, m = min(int(s + 0.5), 1), min(int(t + 0.5), 1)
         cosine = 0.0

@@ -44,8 +44,8 @@ def slits(
 ) -> np.ndarray:
     """Facets (m,) of the strip within a slit; ``at`` (m, 3, 2) cells, ``status`` (nu + 2, nv + 2) of the nodes.
 
-    Seams are followed from their ends within the part: what is left after taking away loose ends runs from rim to
-    rim and is no slit. Bare stretches and holes count as one place each.
+    Seams that run from rim to rim, or round a patch, are no slits; those that end within the part are. Bare stretches
+    and holes count as one place each.
     """
     edges = seams(at, kind, mesh.neighbours, mesh.neighbour_edge)
     if not len(edges) or not part.lidded.boundary_loops:
@@ -79,15 +79,59 @@ def chains_with(chosen: np.ndarray, a: np.ndarray, b: np.ndarray, nodes: int) ->
 
 
 def loose(a: np.ndarray, b: np.ndarray, held: np.ndarray) -> np.ndarray:
-    """Which edges (n,) of a graph, from nodes a to b, hang on a chain of them that is not ``held`` at both ends."""
-    gone = np.zeros(len(a), bool)
-    while True:
-        degree = np.bincount(np.concatenate([a[~gone], b[~gone]]), minlength=len(held))
-        ends = (degree == 1) & ~held
-        more = ~gone & (ends[a] | ends[b])
-        if not more.any():
-            return gone
-        gone |= more
+    """Which edges (n,) of a graph, from nodes a to b, lie on no way between two ``held`` nodes and on no loop.
+
+    With all held nodes made one those are its bridges.
+    """
+    node = np.where(held, 0, np.arange(1, len(held) + 1))
+    return bridges(node[a], node[b], len(held) + 1)
+
+
+@kernel
+def bridges(a: np.ndarray, b: np.ndarray, nodes: int) -> np.ndarray:
+    """Edges (n,) without which the ends a and b (n,) would not hang together (R. E. Tarjan, 1974)."""
+    first = np.zeros(nodes + 1, np.int64)  # of each node's edges in ``way``
+    for n in range(len(a)):
+        first[a[n] + 1] += 1
+        first[b[n] + 1] += 1
+    first = np.cumsum(first)
+    way, free = np.empty(2 * len(a), np.int64), first[:-1].copy()
+    for n in range(len(a)):
+        for x in (a[n], b[n]):
+            way[free[x]] = n
+            free[x] += 1
+    out = np.zeros(len(a), np.bool_)
+    rank, low, came = np.zeros(nodes, np.int64), np.zeros(nodes, np.int64), np.full(nodes, -1)
+    at, stack, count = first[:-1].copy(), np.empty(nodes, np.int64), 0
+    for root in a:
+        if rank[root] > 0:
+            continue
+        depth, stack[0] = 1, root
+        count += 1
+        rank[root] = low[root] = count
+        while depth > 0:
+            x = stack[depth - 1]
+            if at[x] < first[x + 1]:
+                n = way[at[x]]
+                at[x] += 1
+                y = a[n] + b[n] - x
+                if n == came[x]:
+                    continue
+                if rank[y] > 0:
+                    low[x] = min(low[x], rank[y])
+                    continue
+                count += 1
+                rank[y] = low[y] = count
+                came[y] = n
+                stack[depth] = y
+                depth += 1
+                continue
+            depth -= 1
+            if came[x] >= 0:
+                y = a[came[x]] + b[came[x]] - x
+                low[y] = min(low[y], low[x])
+                out[came[x]] = low[x] == rank[x]
+    return out
 
 
 def _places(kind: np.ndarray, mesh: Refined, rim: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

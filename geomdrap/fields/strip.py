@@ -9,6 +9,7 @@ vertices, so that a net that meets itself may differ on the two sides of the sea
 from __future__ import annotations
 
 import math
+from heapq import heappop, heappush
 
 import numpy as np
 
@@ -21,7 +22,7 @@ IS_BLANK, IS_TOO_NARROW, IS_TOO_SHEARED = 8, 9, 10  # values of Status
 # flat area over area in the strip: 1 / cos(shear) up to 75°, and some room
 LEAST_STRETCH, MOST_STRETCH = 0.5, 4.0
 NEARLY_PARALLEL = 0.9  # sine of the shear, 64°
-MEETS = 0.8  # cells: a corner reached on two ways, no further apart than this, is one corner
+OFF, OFF_SHARE = 0.2, 0.4  # cells, and shares of an edge, by which its end may be elsewhere than its yarns lead
 BEYOND_NET = 2  # cells: corners of the part turned to the yarns stick out by more than one
 
 
@@ -33,6 +34,22 @@ def can_be(ratio: float, tangent: np.ndarray) -> bool:
     """
     sine = (tangent[0] * tangent[1]).sum() / math.sqrt((tangent[0] ** 2).sum() * (tangent[1] ** 2).sum())
     return ratio < MOST_STRETCH and (ratio > LEAST_STRETCH or abs(sine) < NEARLY_PARALLEL)
+
+
+@kernel
+def agrees(corners: np.ndarray, at: np.ndarray, tangent: np.ndarray, side: float) -> bool:
+    """Whether a facet's corners (3, 3) mm lie where its yarns ``tangent`` (2, 3) lead by its coordinates (3, 2).
+
+    Where two stretches of the net meet at the corner of a box a vertex has coordinates of one of them, which lead
+    elsewhere in the facets of the other.
+    """
+    for k in range(3):
+        m = (k + 1) % 3
+        way = corners[m] - corners[k]
+        off = (at[m, 0] - at[k, 0]) * tangent[0] + (at[m, 1] - at[k, 1]) * tangent[1] - way
+        if math.sqrt((off * off).sum()) > OFF * side + OFF_SHARE * math.sqrt((way * way).sum()):
+            return False
+    return True
 
 
 @kernel
@@ -135,13 +152,33 @@ def begin_in_net(
             at[f] = np.nan
             continue
         tangents_at(p, q, yarns, normals[f], side, tangent[f])
-        if math.isnan(tangent[f, 0, 0] + tangent[f, 1, 0]):
+        if math.isnan(tangent[f, 0, 0] + tangent[f, 1, 0]) or not agrees(
+            points[triangles[f]], at[f], tangent[f], side
+        ):
             at[f] = np.nan
             continue
         kind[f] = BY_NET
         queue[tail] = f
         tail += 1
     return tail
+
+
+@kernel
+def add_ways(
+    points: np.ndarray, triangles: np.ndarray, neighbours: np.ndarray, kind: np.ndarray, f: int, away: float,
+    ways: list[tuple[float, int]],
+) -> None:
+    """Add the edges of facet f, ``away`` mm from the net, over which bare facets lie, with how far those are."""
+    for k in range(3):
+        g = neighbours[f, k]
+        if g >= 0 and kind[g] == BARE:
+            square = 0.0
+            for c in range(3):
+                between = 0.0
+                for n in range(3):
+                    between += points[triangles[g, n], c] - points[triangles[f, n], c]
+                square += (between / 3.0) ** 2
+            heappush(ways, (away + math.sqrt(square), 3 * f + k))
 
 
 @kernel
@@ -152,7 +189,7 @@ def continue_beyond(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Coordinates at the corners of all facets, in the net and in the strip beyond it.
 
-    ``yarns`` (2, nu, nv, 3) with their ends completed, ``gradient`` (nu - 1, nv - 1, 2) of the shear, rad per cell.
+    ``yarns`` (2, nu, nv, 3) with their ends completed, ``gradient`` (nu, nv, 2) of the shear, rad per cell.
     Returns ``at`` (m, 3, 2) cells, ``kind`` (m,) BARE, BY_NET or BEYOND, ``tangent`` (m, 2, 3) mm per cell along warp
     and weft in the facet's plane, ``stopped`` (m,), the status that keeps a facet bare, and the draped facets in the
     order in which they were reached.
@@ -163,41 +200,41 @@ def continue_beyond(
     queue = np.empty(m, np.int64)
     tail = begin_in_net(points, triangles, normals, vertex_at, yarns, side, at, kind, tangent, queue)
     corners, ends, turned, start = np.empty((3, 3)), np.empty((2, 2)), np.empty((2, 3)), np.empty(2)
-    head = 0
-    while head < tail:
-        f = queue[head]
-        head += 1
-        for k in range(3):
-            g = neighbours[f, k]
-            if g < 0 or kind[g] != BARE:
-                continue
-            e = neighbour_edge[f, k]
-            a, b, o = (k + 1) % 3, k, (e + 2) % 3  # corners of f where corners e and e + 1 of g are; g's third
-            ends[0], ends[1] = at[f, a], at[f, b]
-            for n in range(3):
-                corners[n] = points[triangles[g, (e + n) % 3]]
-            turn_over_edge(tangent[f], corners[0] - corners[1], normals[f], normals[g], turned)
-            start[0] = (at[f, 0, 0] + at[f, 1, 0] + at[f, 2, 0]) / 3.0
-            start[1] = (at[f, 0, 1] + at[f, 1, 1] + at[f, 2, 1]) / 3.0
-            p, q = third_corner(corners, normals[g], ends, start, turned, gradient, tangent[g])
-            known = vertex_at[triangles[g, o]]
-            if not math.isnan(known[0]) and abs(known[0] - p) < MEETS and abs(known[1] - q) < MEETS:
-                p, q = known[0], known[1]
-                stop = 0
-            else:
-                stop = why_not(valid, status, refused, p, q)
-            at[g, e], at[g, (e + 1) % 3] = ends[0], ends[1]
+    ways = [(0.0, 0)]  # edges 3·facet + edge over which to go on, by how far from the net: the nearest lead best
+    ways.pop()
+    for n in range(tail):
+        add_ways(points, triangles, neighbours, kind, queue[n], 0.0, ways)
+    while len(ways) > 0:
+        away, code = heappop(ways)
+        f, k = code // 3, code % 3
+        g, e = neighbours[f, k], neighbour_edge[f, k]
+        if kind[g] != BARE:
+            continue
+        a, b, o = (k + 1) % 3, k, (e + 2) % 3  # corners of f where corners e and e + 1 of g are; g's third
+        ends[0], ends[1] = at[f, a], at[f, b]
+        for n in range(3):
+            corners[n] = points[triangles[g, (e + n) % 3]]
+        turn_over_edge(tangent[f], corners[0] - corners[1], normals[f], normals[g], turned)
+        start[0] = (at[f, 0, 0] + at[f, 1, 0] + at[f, 2, 0]) / 3.0
+        start[1] = (at[f, 0, 1] + at[f, 1, 1] + at[f, 2, 1]) / 3.0
+        p, q = third_corner(corners, normals[g], ends, start, turned, gradient, tangent[g])
+        known = vertex_at[triangles[g, o]]
+        at[g, e], at[g, (e + 1) % 3], at[g, o] = ends[0], ends[1], known
+        stop = 0
+        if math.isnan(known[0]) or not agrees(points[triangles[g]], at[g], tangent[g], side):
             at[g, o, 0], at[g, o, 1] = p, q
-            if stop == 0 and not can_be(stretch(points, triangles[g], at[g], side), tangent[g]):
-                stop = IS_TOO_SHEARED
-            if stop != 0:
-                at[g] = np.nan
-                tangent[g] = np.nan
-                stopped[g] = stop
-                continue
-            if math.isnan(known[0]):
-                vertex_at[triangles[g, o], 0], vertex_at[triangles[g, o], 1] = p, q
-            kind[g] = BEYOND
-            queue[tail] = g
-            tail += 1
+            stop = why_not(valid, status, refused, p, q)
+        if stop == 0 and not can_be(stretch(points, triangles[g], at[g], side), tangent[g]):
+            stop = IS_TOO_SHEARED
+        if stop != 0:
+            at[g] = np.nan
+            tangent[g] = np.nan
+            stopped[g] = stop
+            continue
+        if math.isnan(known[0]):
+            vertex_at[triangles[g, o], 0], vertex_at[triangles[g, o], 1] = p, q
+        kind[g] = BEYOND
+        queue[tail] = g
+        tail += 1
+        add_ways(points, triangles, neighbours, kind, g, away, ways)
     return at, kind, tangent, stopped, queue[:tail]

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from made_parts import cube, plate_with_holes, square_tube
+from made_parts import cube, open_box, pan, plate_with_holes, square_tube
 
 import geomdrap as gd
 from geomdrap.fields.contour import is_simple, signed_area
@@ -134,3 +134,22 @@ def test_the_fabric_area_is_second_order_in_the_pitch(part):
         errors.append(np.array(area[:-1]) / area[-1] - 1.0)
     rms = np.sqrt(np.mean(np.square(errors), axis=0))
     assert (rms < 0.03 * (pitches / 100.0) ** 2).all()  # the radius of the cap is 100 mm
+
+
+@pytest.mark.parametrize("origin", [(0.0, 0.0, 30.0), (7.0, -4.0, 30.0)])
+@pytest.mark.parametrize("edge", [4.0, 8.0])
+def test_a_box_takes_as_much_fabric_as_it_is_covered(origin, edge):
+    result = gd.evaluate(gd.drape(open_box(edge), origin, 0.0, 4.0))
+    assert result.statistics.max < 1e-6
+    assert result.area.fabric == pytest.approx(result.area.draped, rel=2e-4)
+
+
+@pytest.mark.parametrize(("origin", "angle"), [((15.0, 0.0, 0.0), 45.0), ((40.0, 40.0, 0.0), 0.0)])
+def test_the_rim_of_a_pan_is_smooth_in_the_flat_pattern(origin, angle):
+    result = gd.evaluate(gd.drape(pan(), origin, angle, 5.0, project=True))
+    assert result.area.coverage == pytest.approx(1.0, abs=1e-9)
+    for loop in (*result.flat.outer, *result.flat.inner):
+        ways = np.roll(loop, -1, axis=0) - loop
+        headings = np.degrees(np.arctan2(ways[:, 1], ways[:, 0]))
+        turns = (headings - np.roll(headings, 1) + 180.0) % 360.0 - 180.0
+        assert np.abs(turns).max() < 35.0

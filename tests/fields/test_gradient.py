@@ -16,18 +16,27 @@ def test_a_linear_shear_has_its_slopes_everywhere_the_rim_included():
     shear[:2, :3] = np.nan
     shear[5, 6] = np.nan
     found = shear_gradients(shear)
-    here = np.isfinite(shear)
-    np.testing.assert_allclose(found[here], np.tile([0.03, -0.02], (here.sum(), 1)), atol=1e-12)
-    assert np.isnan(found[~here]).all()
+    for i, j in np.argwhere(np.isfinite(shear)):
+        assert gradient_near(found, i + 0.5, j + 0.5) == pytest.approx((0.03, -0.02), abs=1e-12)
+    assert np.isnan(found[1, 1]).all()  # between cells that are not there
 
 
 def test_a_jump_is_not_carried_on():
     shear = np.zeros((8, 3))
     shear[4:] = 0.5
-    assert (shear_gradients(shear)[..., 0] == 0.0).all()
+    assert [gradient_near(shear_gradients(shear), p, 1.5)[0] for p in (1.5, 4.0, 7.5, 9.0)] == [0.0] * 4
     shear = np.zeros((8, 3))
     shear[-1] = 0.5  # the last cell alone
-    assert (shear_gradients(shear)[-1, :, 0] == 0.0).all()
+    assert [gradient_near(shear_gradients(shear), p, 1.5)[0] for p in (7.0, 7.5, 9.0)] == [0.0] * 3
+
+
+def test_beyond_the_rim_slopes_are_those_of_the_same_row_or_column():
+    i, j = np.indices((9, 9))
+    shear = 0.02 * np.maximum(i - 4, 0) + 0.01 * np.maximum(j - 4, 0)  # a wall: f(u) + g(v)
+    shear[i + j > 10] = np.nan
+    found = shear_gradients(shear)
+    for p, q, slopes in ((5.5, 5.5, (0.02, 0.01)), (8.0, 3.5, (0.02, 0.0)), (3.5, 8.0, (0.0, 0.01))):
+        assert gradient_near(found, p, q) == pytest.approx(slopes, abs=1e-12)
 
 
 def test_a_cell_alone_takes_the_slope_of_the_nearest_cells():

@@ -43,7 +43,8 @@ def test_a_random_bumpy_plate_is_draped_within_its_own_bounds(seed, n, height, p
     assert np.isnan(result.face_shear[~on]).all()
     assert (np.abs(result.face_shear[on]) <= 90.0).all()
     assert (result.face_thickness[on] >= 1.0).all()
-    assert 0.0 <= result.statistics.mean <= result.statistics.p95 + 1e-9
+    assert 0.0 <= result.statistics.mean <= result.statistics.max + 1e-9
+    assert result.statistics.p95 <= result.statistics.max + 1e-9
     # the last correction of a cell, 1e-5 of a side, may move a node over an edge of its facet, in the facet's plane
     assert result.checks.off_surface < 1e-9 * part.diagonal + 1e-5 * pitch
     assert all(signed_area(loop) > 0.0 for loop in result.flat.outer)
