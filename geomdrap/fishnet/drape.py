@@ -10,6 +10,7 @@ import numpy as np
 
 from geomdrap.errors import DrapeError, SurfaceError
 from geomdrap.fishnet import seed as seeds
+from geomdrap.fishnet.centroid import said
 from geomdrap.fishnet.effect import Effect, fabric_with, in_order, net_with, shift_with, surface_with
 from geomdrap.fishnet.extent import Extent, first_extent, grow, sides
 from geomdrap.fishnet.fabric import Fabric
@@ -65,7 +66,7 @@ def drape(
     if not math.isfinite(angle):
         raise DrapeError(f"the heading must be a finite number of degrees, not {angle}")
     tool, (face, point, distance) = surface, seeds.locate(surface, origin)
-    surface = surface_with(acting, tool)
+    meant, surface = point, surface_with(acting, tool)
     if surface is not tool:
         face, point, _ = seeds.locate(surface, point)
     part = surface.only_component(face)
@@ -75,7 +76,8 @@ def drape(
     _check_distance(tool, origin, distance, pitch, project)
     mesh = mesh_of(part.lidded, SPREAD * pitch)
     point, moved = seeds.out_of_corner(part, origin, point, mesh, pitch)
-    notes = (*notes, *moved)
+    where = said(tool, meant, pitch) if isinstance(origin, str) and origin == "centroid" else ()
+    notes = (*notes, *where, *moved)
     start = _plant(part, point, math.fmod(angle, 360.0), mesh, reference, fabric, shift_with(acting, Shift()))
     extent = first_extent(part, start, pitch, reach)
     while True:

@@ -7,7 +7,7 @@ from made_parts import bumpy_sheet, cube, plate_with_holes, pyramid
 import geomdrap as gd
 from geomdrap.errors import DrapeError
 from geomdrap.fishnet import Fabric
-from geomdrap.surface import Surface, shapes
+from geomdrap.surface import Surface, samples, shapes
 
 PLANE = shapes.plane(200.0, 200.0, 10.0)
 SPHERE = shapes.icosphere(50.0, 4)
@@ -85,6 +85,33 @@ def test_the_centroid_is_that_of_the_area_projected_onto_the_part():
     corners = sheet.points[sheet.triangles]
     middle = (corners.mean(axis=1) * sheet.areas[:, None]).sum(axis=0) / sheet.area
     np.testing.assert_allclose(net.origin, sheet.nearest(middle[None]).point[0], atol=1e-9)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+def test_the_centroid_of_a_double_dome_is_laid_onto_its_plane_of_symmetry(angle):
+    turn = np.array([[1.0, 0, 0], [0, np.cos(angle), -np.sin(angle)], [0, np.sin(angle), np.cos(angle)]])
+    dome = samples.build("double-dome", edge=8.0)
+    net = gd.drape(Surface(dome.points @ turn.T, dome.triangles), "centroid", 0.0, 10.0)
+    back = net.origin @ turn
+    np.testing.assert_allclose(back[:2], 0.0, atol=1e-6)
+    assert any("straight across from it" in note for note in net.notes)
+
+
+def test_the_centroid_of_a_helmet_is_laid_onto_its_crown_though_its_flanks_are_nearer():
+    dome = shapes.hemisphere(50.0, 3.0)
+    surface = Surface(dome.points * [1.3, 0.6, 1.1], dome.triangles)
+    assert abs(surface.nearest(surface.centroid[None]).point[0, 1]) > 20.0
+    net = gd.drape(surface, "centroid", 0.0, 4.0)
+    np.testing.assert_allclose(net.origin, [0.0, 0.0, 55.0], atol=0.1)
+
+
+def test_a_centroid_over_a_hole_or_in_a_closed_part_says_that_other_points_are_as_near():
+    square = plate_with_holes()  # its centroid is in a hole
+    for surface, pitch in ((square, 4.0), (SPHERE, 10.0)):
+        (note,) = gd.drape(surface, "centroid", 0.0, pitch).notes
+        assert "are as near: choose one with --origin x,y,z" in note
+        lies = np.linalg.norm(surface.nearest(surface.centroid[None]).point[0] - surface.centroid)
+        assert f"the centroid lies {lies:.4g} mm off the part" in note
 
 
 @pytest.mark.parametrize("origin", [220, "vertex:220", np.int64(220)])
@@ -183,7 +210,7 @@ def test_a_centroid_on_a_narrow_corner_of_the_rim_is_moved_inward_and_it_says_so
     assert any("moved 4 mm inward" in note for note in net.notes)
     assert net.cell_valid.sum() * 16.0 > 0.7 * part.area
     small = gd.drape(spiked_frame(-57.0), "centroid", angle, 4.0)  # a corner wider than 90 degrees is a good seed
-    assert not small.notes
+    assert not any("moved" in note for note in small.notes)
 
 
 def test_a_seed_of_the_users_own_on_a_narrow_corner_is_not_moved():
