@@ -89,9 +89,11 @@ def drape(
         elements = ply_on(result, mesh, fe_axis, outputs)
         files = write_all(result, folder, outputs, progress.share, Extras(command, elements, ply_thickness, paper))
     without = elements.notes() if elements is not None else []
-    say((*result.warnings, *without), (*result.net.notes, *_left_over(folder, files)), quiet)
+    left = tuple(_left_over(folder, files))
+    say((*result.warnings, *without, *left), result.net.notes, quiet)
     if as_json:
-        print_json(as_dict(result, files))
+        document = as_dict(result, files)
+        print_json({**document, "warnings": [*document["warnings"], *left]})
     elif not quiet:
         click.echo(summary(result, files))
     return int(strict and is_incomplete(result))
@@ -115,7 +117,8 @@ def _left_over(folder: Path, files: Mapping[str, Path]) -> Iterator[str]:
 
     names = left_over(folder, files.values()) if files else []
     if names:
-        yield f"{', '.join(names)} in {folder} {'is' if len(names) == 1 else 'are'} of an earlier run"
+        verb, them = ("is", "it") if len(names) == 1 else ("are", "them")
+        yield f"{', '.join(names)} in {folder} {verb} of an earlier run: remove {them}, or use another folder (-o)"
 
 
 def compute(

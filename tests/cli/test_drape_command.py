@@ -184,8 +184,11 @@ def test_a_failing_format_leaves_all_earlier_files_untouched(
 
 def test_files_that_an_earlier_run_left_in_the_folder_are_named(run: Run, asked: dict[str, Any]) -> None:
     assert "earlier run" not in run("drape", "a.stl", *SOME).stderr
-    again = run("drape", "a.stl", "--outputs", "json,csv")
-    assert "Note: net.vtu, part.vtu in drape are of an earlier run\n" in again.stderr
+    again = run("drape", "a.stl", "--outputs", "json,csv", "--json", "--quiet")
+    words = "net.vtu, part.vtu in drape are of an earlier run: remove them, or use another folder (-o)"
+    assert f"Warning: {words}\n" in again.stderr  # quiet or not: whoever reads the folder reads two runs
+    assert words in json.loads(again.stdout)["warnings"]
+    assert "earlier run" not in Path("drape/drape.json").read_text()  # the same bytes for the same input
 
 
 def test_files_of_other_programs_in_the_folder_stay(run: Run, asked: dict[str, Any]) -> None:
