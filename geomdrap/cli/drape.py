@@ -107,7 +107,7 @@ def _check_folder(folder: Path, outputs: tuple[str, ...]) -> None:
         check_writable(folder)
     elif click.get_current_context().get_parameter_source("folder") == ParameterSource.COMMANDLINE:
         raise click.UsageError(
-            "-o names a folder, but --outputs none writes no files", click.get_current_context()
+            "-o names a folder, but --outputs none writes no files: leave out one", click.get_current_context()
         )
 
 
@@ -139,14 +139,22 @@ def compute(
     """Read, drape and evaluate; ``drape_options`` go to `geomdrap.drape` as they are."""
     import geomdrap as gd
     from geomdrap.cli.acting import effects_of
+    from geomdrap.cli.pitch import finer_where_coarse, require_room
 
     effects = effects_of(effect_texts, model, plugins)
     progress.step("Reading")
     surface = gd.read_surface(part, unit=unit, tolerance=tolerance, flip=flip)
+    asked = drape_options.pop("pitch", None)
+    if asked is not None:
+        require_room(surface, asked)
     before_drape()
-    progress.step("Draping")
     reach = (blank[0] / 2, blank[1] / 2) if blank else None
-    net = gd.drape(surface, reach=reach, effects=effects, **drape_options)
-    progress.step("Evaluating")
-    result: Drape = gd.evaluate(net, limit_angle, progress.share)
-    return result
+
+    def at(pitch: float | None) -> Drape:
+        progress.step("Draping")
+        net = gd.drape(surface, pitch=pitch, reach=reach, effects=effects, **drape_options)
+        progress.step("Evaluating")
+        result: Drape = gd.evaluate(net, limit_angle, progress.share)
+        return result
+
+    return at(asked) if asked is not None else finer_where_coarse(at(None), at)
