@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 
 FAR = 1e5  # part's diagonals from the origin: beyond, rounding reaches what ``TIE`` tells apart
+MOST_HEADING = 1e6  # degrees: more is a slip of the pen, and leaves few digits of the direction
 AXIS_ROUNDS, AXIS_STRAIN = 10, 1e-8  # marches until a sliding weft generator has its length: one, without skew
 SPREAD = 2.0  # cells: the facets' curvature is spread no further, which is below what the net resolves
 
@@ -63,8 +64,8 @@ def drape(
     """
     acting = in_order(effects)
     fabric = fabric_with(acting, fabric or Fabric())
-    if not math.isfinite(angle):
-        raise DrapeError(f"the heading must be a finite number of degrees, not {angle}")
+    if not abs(angle) <= MOST_HEADING:
+        raise DrapeError(f"the heading must be a number of degrees up to {MOST_HEADING:,.0f}, not {angle:g}")
     tool, (face, point, distance) = surface, seeds.locate(surface, origin)
     meant, surface = point, surface_with(acting, tool)
     if surface is not tool:

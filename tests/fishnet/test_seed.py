@@ -136,7 +136,7 @@ def test_an_origin_that_is_no_point_is_refused(origin):
         gd.drape(PLANE, origin, 0.0, 5.0)
 
 
-@pytest.mark.parametrize("angle", [np.nan, np.inf])
+@pytest.mark.parametrize("angle", [np.nan, np.inf, 1e308, -1.1e6])
 def test_a_heading_that_is_no_number_is_refused(angle):
     with pytest.raises(DrapeError, match="heading"):
         gd.drape(PLANE, "centroid", angle, 5.0)
