@@ -14,6 +14,7 @@ ONE_SIDED = 0.1  # mean normal of a part that has an upper side: tubes and close
 NEAR = 0.02  # of the part's diagonal: a centroid this close lies on the part, and its nearest point is meant
 AS_NEAR = 0.02  # distances that differ by less than this share tell nothing apart on facets
 APART = 0.5  # of the distance: places this far from each other are two
+ON_CORNER = 1e-3  # of the facet's size: digits of a file in single precision are coarser than those of a seed
 ON_RIM_OF_FACET = 1e-9  # of its size: the line meets both of two facets on their edge, never none
 
 
@@ -66,7 +67,16 @@ def _across(surface: Surface) -> np.ndarray | None:
     if len(met) == 0:
         return None
     at = (weight[met] * height[met]).sum(axis=1) / whole[met]
-    return np.asarray(surface.centroid + at[np.abs(at).argmin()] * up)
+    n = int(np.abs(at).argmin())
+    return _snapped(surface, int(faces[met[n]]), surface.centroid + at[n] * up)
+
+
+def _snapped(surface: Surface, face: int, point: np.ndarray) -> np.ndarray:
+    """The point, or the corner that it all but lies on: beside a tip all of its deficit would fall to one quadrant."""
+    corners = surface.points[surface.triangles[face]]
+    away = np.linalg.norm(corners - point, axis=1)
+    on_it = away.min() <= ON_CORNER * np.sqrt(surface.areas[face])
+    return np.array(corners[away.argmin()] if on_it else point)
 
 
 def said(surface: Surface, point: np.ndarray, pitch: float) -> tuple[str, ...]:

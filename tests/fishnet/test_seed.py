@@ -105,6 +105,18 @@ def test_the_centroid_of_a_helmet_is_laid_onto_its_crown_though_its_flanks_are_n
     np.testing.assert_allclose(net.origin, [0.0, 0.0, 55.0], atol=0.1)
 
 
+def test_the_centroid_of_a_cone_is_laid_onto_its_tip_though_single_precision_moves_it_aside():
+    cone = samples.build("cone", edge=10.0)
+    rounded = Surface(cone.points.astype(np.float32).astype(float), cone.triangles)
+    tip = rounded.points[rounded.points[:, 2].argmax()]
+    net = gd.drape(rounded, "centroid", 0.0, 10.0)
+    np.testing.assert_array_equal(net.origin, tip)
+    i, j = int(np.argmin(abs(net.u))), int(np.argmin(abs(net.v)))
+    halves = ((slice(None, i), slice(i, None)), (slice(None, j), slice(j, None)))
+    quarters = [np.nanmean(net.cell_shear[a, b]) for a in halves[0] for b in halves[1]]
+    np.testing.assert_allclose(np.abs(quarters), np.mean(np.abs(quarters)), rtol=0.1)
+
+
 def test_a_centroid_over_a_hole_or_in_a_closed_part_says_that_other_points_are_as_near():
     square = plate_with_holes()  # its centroid is in a hole
     for surface, pitch in ((square, 4.0), (SPHERE, 10.0)):
