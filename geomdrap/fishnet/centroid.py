@@ -72,7 +72,7 @@ def _across(surface: Surface) -> np.ndarray | None:
 
 
 def _snapped(surface: Surface, face: int, point: np.ndarray) -> np.ndarray:
-    """The point, or the corner that it all but lies on: beside a tip all of its deficit would fall to one quadrant."""
+    """The point, or the corner it all but lies on: beside a tip all of its deficit would fall to one quadrant."""
     corners = surface.points[surface.triangles[face]]
     away = np.linalg.norm(corners - point, axis=1)
     on_it = away.min() <= ON_CORNER * np.sqrt(surface.areas[face])
