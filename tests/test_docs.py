@@ -98,3 +98,11 @@ def test_what_is_written_by_default_is_the_same_on_the_command_line_and_in_pytho
 @pytest.mark.parametrize("name", [output.file for outputs in OUTPUTS.values() for output in outputs])
 def test_the_readme_names_every_result_file(name: str) -> None:
     assert name in README.read_text(encoding="utf-8")
+
+
+def test_the_readme_has_the_key_to_the_numbers_of_reasons() -> None:
+    from geomdrap.fishnet import Status
+
+    text = " ".join(README.read_text(encoding="utf-8").split())
+    for status in Status:
+        assert f"{status.value} {status.reason.partition(':')[0]}" in text

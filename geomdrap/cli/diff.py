@@ -7,22 +7,22 @@ from pathlib import Path
 import click
 
 from geomdrap.cli.options import json_option
-from geomdrap.cli.values import Number
+from geomdrap.cli.values import NamedPath, Number
 
 
 @click.command()
-@click.argument("old", type=click.Path(path_type=Path))
-@click.argument("new", type=click.Path(path_type=Path))
+@click.argument("old", type=NamedPath())
+@click.argument("new", type=NamedPath())
 @click.option(
     "--tol-mm",
-    type=Number("MM", above=-1e-300),
+    type=Number("MM", least=0.0),
     default=1e-6,
     show_default=True,
     help="Largest move that is no change, mm; areas and shares are judged by it too.",
 )
 @click.option(
     "--tol-deg",
-    type=Number("DEG", above=-1e-300),
+    type=Number("DEG", least=0.0),
     default=1e-6,
     show_default=True,
     help="Largest turn or difference of shear that is no change, degrees.",

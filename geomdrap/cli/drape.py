@@ -89,9 +89,11 @@ def drape(
         elements = ply_on(result, mesh, fe_axis, outputs)
         files = write_all(result, folder, outputs, progress.share, Extras(command, elements, ply_thickness, paper))
     without = elements.notes() if elements is not None else []
-    say((*result.warnings, *without), (*result.net.notes, *_left_over(folder, files)), quiet)
+    left = tuple(_left_over(folder, files))
+    say((*result.warnings, *without, *left), result.net.notes, quiet)
     if as_json:
-        print_json(as_dict(result, files))
+        document = as_dict(result, files)
+        print_json({**document, "warnings": [*document["warnings"], *left]})
     elif not quiet:
         click.echo(summary(result, files))
     return int(strict and is_incomplete(result))
@@ -105,7 +107,7 @@ def _check_folder(folder: Path, outputs: tuple[str, ...]) -> None:
         check_writable(folder)
     elif click.get_current_context().get_parameter_source("folder") == ParameterSource.COMMANDLINE:
         raise click.UsageError(
-            "-o names a folder, but --outputs none writes no files", click.get_current_context()
+            "-o names a folder, but --outputs none writes no files: leave out one", click.get_current_context()
         )
 
 
@@ -115,7 +117,8 @@ def _left_over(folder: Path, files: Mapping[str, Path]) -> Iterator[str]:
 
     names = left_over(folder, files.values()) if files else []
     if names:
-        yield f"{', '.join(names)} in {folder} {'is' if len(names) == 1 else 'are'} of an earlier run"
+        verb, them = ("is", "it") if len(names) == 1 else ("are", "them")
+        yield f"{', '.join(names)} in {folder} {verb} of an earlier run: remove {them}, or use another folder (-o)"
 
 
 def compute(
@@ -136,14 +139,22 @@ def compute(
     """Read, drape and evaluate; ``drape_options`` go to `geomdrap.drape` as they are."""
     import geomdrap as gd
     from geomdrap.cli.acting import effects_of
+    from geomdrap.cli.pitch import finer_where_coarse, require_room
 
     effects = effects_of(effect_texts, model, plugins)
     progress.step("Reading")
     surface = gd.read_surface(part, unit=unit, tolerance=tolerance, flip=flip)
+    asked = drape_options.pop("pitch", None)
+    if asked is not None:
+        require_room(surface, asked)
     before_drape()
-    progress.step("Draping")
     reach = (blank[0] / 2, blank[1] / 2) if blank else None
-    net = gd.drape(surface, reach=reach, effects=effects, **drape_options)
-    progress.step("Evaluating")
-    result: Drape = gd.evaluate(net, limit_angle, progress.share)
-    return result
+
+    def at(pitch: float | None) -> Drape:
+        progress.step("Draping")
+        net = gd.drape(surface, pitch=pitch, reach=reach, effects=effects, **drape_options)
+        progress.step("Evaluating")
+        result: Drape = gd.evaluate(net, limit_angle, progress.share)
+        return result
+
+    return at(asked) if asked is not None else finer_where_coarse(at(None), at)

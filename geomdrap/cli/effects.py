@@ -58,7 +58,8 @@ def _draw(text: str, folder: Path) -> dict[str, Path]:
     from geomdrap.export.signature import shown_values, write_signature
     from geomdrap.export.whole import check_writable
 
-    effect = library.parse(text)
+    name, _, values = text.partition(":")
+    effect = library.parse(text) if values.strip() else library.make(name.strip())
     if effect.is_neutral:
         effect = type(effect)(**shown_values(effect))
     check_writable(folder)

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
-from geomdrap.cli.values import Direction, Names, Number, Origin, Size
+from geomdrap.cli.values import Direction, NamedPath, Names, Number, Origin, Size
 
 USUAL = ("json", "csv", "vtu", "png", "dxf", "svg", "html")  # export.outputs.USUAL; a test compares
 FE_OUTPUTS = ("abaqus", "nastran", "optistruct", "radioss", "acp")
@@ -17,8 +17,8 @@ OUTPUTS = (*USUAL, "cut", "pdf", *FE_OUTPUTS)  # the keys of export.outputs.OUTP
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-def _path(**more: Any) -> click.Path:
-    return click.Path(path_type=Path, **more)
+def _path() -> click.Path:
+    return NamedPath()
 
 
 def part_argument(function: F) -> F:
@@ -65,8 +65,7 @@ def seed_options(function: F) -> F:
             "--angle",
             type=Number("DEG"),
             default=0.0,
-            show_default="0",
-            help="Heading of the warp at the origin, counter-clockwise about the normal.",
+            help="Heading of the warp at the origin, counter-clockwise about the normal.  [default: 0]",
         ),
         click.option(
             "--origin",

@@ -63,8 +63,8 @@ def _point(point: Iterable[float]) -> str:
 
 
 def _area(square_mm: float) -> str:
-    """Give an area in the unit that reads best."""
-    return f"{square_mm / 1e6:.4f} m²" if square_mm >= 1e5 else f"{square_mm:.1f} mm²"
+    """Give an area in mm², as the files and pictures do, whatever its size."""
+    return f"{square_mm:,.1f} mm²" if square_mm >= 10.0 else f"{square_mm:.4g} mm²"
 
 
 def _percent(share: float) -> str:

@@ -12,26 +12,49 @@ Vector = tuple[float, float, float]
 
 
 class Number(click.ParamType):
-    """A finite number, optionally within bounds (``above`` and ``below`` are excluded themselves)."""
+    """A finite number, optionally within bounds: ``above`` and ``below`` excluded, ``least`` itself allowed."""
 
-    def __init__(self, name: str, above: float = -math.inf, below: float = math.inf):
+    def __init__(
+        self,
+        name: str,
+        above: float = -math.inf,
+        below: float = math.inf,
+        least: float = -math.inf,
+    ):
         self.name = name
-        self.above = above
-        self.below = below
+        self.above, self.below = above, below
+        self.least = least
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
         """Give the number, or fail with a sentence."""
         number = _number(value)
         if number is None:
             self.fail(f"'{value}' is not a number", param, ctx)
-        if not self.above < number < self.below:
+        if not (self.above < number < self.below and self.least <= number):
             self.fail(f"{value} is not {self._range()}", param, ctx)
         return number
 
     def _range(self) -> str:
-        if math.isinf(self.below):
-            return "a finite number" if math.isinf(self.above) else f"a finite number above {self.above:g}"
-        return f"between {self.above:g} and {self.below:g}"
+        if math.isfinite(self.above) and math.isfinite(self.below):
+            return f"between {self.above:g} and {self.below:g}, both excluded"
+        if math.isfinite(self.least):
+            return f"a finite number of at least {self.least:g}"
+        return "a finite number" if math.isinf(self.above) else f"a finite number above {self.above:g}"
+
+
+class NamedPath(click.Path):
+    """A file or folder by its name, which must not be empty: that would be the folder one stands in."""
+
+    def __init__(self) -> None:
+        from pathlib import Path
+
+        super().__init__(path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Give the path, or fail with a sentence."""
+        if value == "":
+            self.fail("the name is empty", param, ctx)
+        return super().convert(value, param, ctx)
 
 
 class Triple(click.ParamType):
@@ -156,8 +179,10 @@ class Names(click.ParamType):
         asked = {part.strip().lower() for part in str(value).split(",")}
         if asked == {"none"}:
             return ()
+        if "none" in asked:
+            self.fail(f"'{value}' asks for none and for others; leave out one or the other", param, ctx)
         for name in sorted(asked.difference(self.known)):
-            self.fail(f"'{name}' is not one of {', '.join(self.known)}, or none alone", param, ctx)
+            self.fail(f"'{name}' is not one of {', '.join(self.known)} (or none, for no files)", param, ctx)
         return tuple(name for name in self.known if name in asked)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from geomdrap.effects.registry import make
+from geomdrap.effects.registry import asked
 from geomdrap.errors import EffectError
 from geomdrap.fishnet import Effect
 
@@ -36,7 +36,8 @@ def _unit(unit: str) -> str:
 def read_model(path: str | Path) -> tuple[Effect, ...]:
     """The effects of a model file, in its order.
 
-    Raises EffectError where it is no model file of a known format, or names unknown effects or values.
+    Raises EffectError where it is no model file of a known format, names unknown effects or values, or an effect
+    without the values that it needs to act.
     """
     try:
         document = tomllib.loads(Path(path).read_text(encoding="utf-8"))
@@ -60,6 +61,6 @@ def _effect_of(entry: Mapping[str, Any], path: str | Path) -> Effect:
     if not isinstance(entry.get("name"), str):
         raise EffectError(f"model {path}: an [[effect]] has no name")
     try:
-        return make(entry["name"], **values)
+        return asked(entry["name"], values)
     except EffectError as error:
         raise EffectError(f"model {path}: {error}") from error

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
@@ -95,10 +96,30 @@ def make(name: str, **values: float) -> Effect:
     return find(name)(**values)
 
 
+def asked(name: str, values: Mapping[str, float]) -> Effect:
+    """As ``make``, for an effect that a person names in order that it acts; neutral values must be written out.
+
+    Raises EffectError as ``make`` does, and where values are missing without which the effect does nothing.
+    """
+    effect = make(name, **values)
+    if effect.is_neutral and all(effect.values[p] != _neutral(effect, p) for p in values):
+        missing = [p for p in effect.parameters if p.name not in values]
+        first = missing[0]
+        raise EffectError(
+            f"effect {name} does nothing without a value of {' or '.join(p.name for p in missing)}: give one, "
+            f"e.g. {name}:{first.name}={first.typical:g}"
+        )
+    return effect
+
+
+def _neutral(effect: Effect, name: str) -> float:
+    return next(p.neutral for p in effect.parameters if p.name == name)
+
+
 def parse(text: str) -> Effect:
     """An effect as written on a command line, ``slip:coefficient=0.6`` or ``yarn-extension:strain_warp=0.01,...``.
 
-    Raises EffectError where it cannot be read.
+    Raises EffectError where it cannot be read, or would do nothing for want of a value.
     """
     name, _, rest = text.partition(":")
     values: dict[str, float] = {}
@@ -113,4 +134,4 @@ def parse(text: str) -> Effect:
                 f"effect {text!r}: {item!r} is not PARAMETER=NUMBER, each once, as in slip:coefficient=0.6"
             )
         values[key] = value
-    return make(name.strip(), **values)
+    return asked(name.strip(), values)

@@ -13,6 +13,7 @@ from geomdrap.export.compare_legend import draw_dot_bar, draw_size_bar, key_figu
 from geomdrap.export.compare_scale import CompareScale, scale_of, signed_values
 from geomdrap.export.compare_trend_plot import draw_trend, top_of
 from geomdrap.export.compare_view import choose_camera, draw_dots, draw_vectors, plain_skin
+from geomdrap.export.glyphs import drawable
 from geomdrap.export.layout import Box
 from geomdrap.export.legend import position
 from geomdrap.export.picture import DOTS, MARGIN, WIDTH
@@ -99,7 +100,7 @@ def _heading(figure: Any, comparison: Comparison, bottom: float, prefix: str) ->
     wide, high = figure.get_size_inches()
     net, top = comparison.net, (bottom + HEADER - 0.2) / high
     title = f"{prefix}{Path(net.surface.source).name} against {comparison.measurement.source}"
-    title = textwrap.shorten(title, 62, placeholder="…")
+    title = drawable(textwrap.shorten(title, 62, placeholder="…"))
     figure.text(MARGIN / wide, top, title, fontsize=17, fontweight="bold", color=palette.INK, va="top")
     where = position(net.origin, net.surface.diagonal)
     line = f"warp at {net.angle:g}°,  origin ({where}) mm,  pitch {net.pitch:.4g} mm"

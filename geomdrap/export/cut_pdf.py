@@ -15,6 +15,7 @@ from geomdrap.export import palette
 from geomdrap.export.cut_pieces import DEPTH, Piece, cut_pieces
 from geomdrap.export.cut_tiles import MARGIN, OVERLAP, Tile, Tiling, tiling
 from geomdrap.export.drawing import note_words
+from geomdrap.export.glyphs import drawable
 from geomdrap.export.whole import write_whole
 
 if TYPE_CHECKING:
@@ -142,7 +143,8 @@ def overview(result: Drape, pieces: tuple[Piece, ...], pages: Tiling, paper: str
     ]
     for k, line in enumerate(words):
         bold = "bold" if k == 0 else "normal"
-        axes.text(MARGIN, height - MARGIN - 5.0 * (k + 1), line, fontsize=8.5, fontweight=bold, color=palette.INK)
+        y, shown = height - MARGIN - 5.0 * (k + 1), drawable(line)
+        axes.text(MARGIN, y, shown, fontsize=8.5, fontweight=bold, color=palette.INK)
     room = np.array([width - 2 * MARGIN, height - 2 * MARGIN - 5.0 * (len(words) + 2)])
     step = pages.shown - OVERLAP
     whole = np.array([pages.columns, pages.rows]) * step + OVERLAP

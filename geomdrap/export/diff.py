@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from geomdrap.errors import GeomdrapError
+from geomdrap.export.one_run import doubts
 
 COMPARED = ("drape.json", "nodes.csv", "flat.dxf", "flat.svg")
 SCHEMA = "geomdrap.diff/1"
@@ -78,7 +79,8 @@ class Comparison:
 def compare(old: Path, new: Path, tolerance: Tolerance | None = None) -> Comparison:
     """Compare two result folders, or two files of one kind, ``old`` the reference.
 
-    A file of ``old`` that ``new`` lacks is a change; one that only ``new`` has is a note. Raises
+    A file of ``old`` that ``new`` lacks is a change; one that only ``new`` has is a note, and so is a folder whose
+    files are of different runs. Raises
     `GeomdrapError` where there is nothing to compare or a file cannot be read as what it claims to be.
     """
     tolerance = tolerance or Tolerance()
@@ -91,6 +93,9 @@ def compare(old: Path, new: Path, tolerance: Tolerance | None = None) -> Compari
         else:
             result.compared.append(name)
             _compare_files(name, left, right, tolerance, result)
+    for folder in (Path(old), Path(new)):
+        if folder.is_dir():
+            result.notes += doubts(folder, COMPARED)
     return result
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geomdrap.export import palette
+from geomdrap.export.glyphs import drawable
 from geomdrap.export.report_json import is_incomplete
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ def draw_header(figure: Any, result: Drape, margin: float) -> None:
     wide, high = figure.get_size_inches()
     net = result.net
     where = position(net.origin, net.surface.diagonal)
-    name = textwrap.shorten(Path(net.surface.source).name, 40, placeholder="…") or "surface"
+    name = drawable(textwrap.shorten(Path(net.surface.source).name, 40, placeholder="…") or "surface")
     figure.text(
         margin / wide, 1 - 0.22 / high, name, fontsize=18, fontweight="bold", color=palette.INK, va="top"
     )
@@ -127,7 +128,7 @@ def draw_colour_bar(figure: Any, result: Drape, top: float, box: tuple[float, fl
     axes.set_xticks(ticks)
     labels = [f"{t:g}°" for t in ticks]
     if result.statistics.max > top:
-        labels[-1] = f"{top:g}° to {result.statistics.max:.0f}°"
+        labels[-1] = f"≥ {top:g}°"
     axes.set_xticklabels(labels)
     title = "Shear angle on the part (size, without sign)"
     axes.set_title(title, fontsize=9, color=palette.INK, loc="left", pad=4)
@@ -201,7 +202,7 @@ def draw_warnings(figure: Any, lines: list[str], margin: float) -> None:
         figure.text(
             (margin + 0.15) / wide,
             y / high,
-            line,
+            drawable(line),
             fontsize=9,
             va="center",
             color=palette.ALARM if alarm else palette.INK,

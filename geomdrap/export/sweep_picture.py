@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geomdrap.export import palette
+from geomdrap.export.glyphs import drawable
 from geomdrap.export.layout import Box
 from geomdrap.export.picture import DOTS
 from geomdrap.export.sweep_angle_plot import draw_angles, shown_criteria
@@ -59,7 +60,7 @@ def draw(sweep: Sweep, way: Sequence[Row] = ()) -> Any:
 def _draw_header(figure: Any, sweep: Sweep) -> None:
     """Part, number of cases, the best of them."""
     wide, high = figure.get_size_inches()
-    best, name = sweep.best, Path(sweep.job.surface.source).name
+    best, name = sweep.best, drawable(Path(sweep.job.surface.source).name)
     failures = sum(row.reason is not None for row in sweep.rows)
     said = f", {failures} failed" if failures else ""
     where = ", ".join(f"{round(x, 1) + 0.0:g}" for x in best.origin)

@@ -18,8 +18,8 @@ _Fields = dict[str, np.ndarray]
 def write_net(result: Drape, path: Path) -> None:
     """Write the net: a quad per valid cell, corners in the order (i, j), (i+1, j), (i+1, j+1), (i, j+1).
 
-    Point data: u, v [mm], shear [deg]. Cell data: shear [deg], thickness [factor], class (0 below half the
-    limit angle, 1 up to the limit, 2 beyond).
+    Point data: u, v [mm], shear [deg]. Cell data: shear [deg], thickness and fibre_volume [factors, see
+    ``write_part``], class (0 below half the limit angle, 1 up to the limit, 2 beyond).
     """
     net = result.net
     i, j = np.nonzero(net.cell_valid)
@@ -27,6 +27,7 @@ def write_net(result: Drape, path: Path) -> None:
     used, quads = np.unique(corners, return_inverse=True)
     row, column = np.unravel_index(used, net.status.shape)
     shear = net.cell_shear[i, j]
+    fibre = 1.0 / np.cos(np.radians(shear))
     _write(
         path,
         net.points[row, column],
@@ -34,7 +35,8 @@ def write_net(result: Drape, path: Path) -> None:
         {"u": net.u[row], "v": net.v[column], "shear": net.shear[row, column]},
         {
             "shear": shear,
-            "thickness": 1.0 / np.cos(np.radians(shear)),
+            "thickness": fibre,
+            "fibre_volume": fibre,
             "class": shear_class(shear, result.limit_angle),
         },
     )
@@ -43,7 +45,9 @@ def write_net(result: Drape, path: Path) -> None:
 def write_part(result: Drape, path: Path) -> None:
     """Write the part's own triangles with the ply on them: NaN where they are bare.
 
-    Cell data: shear [deg], thickness and fibre_volume [factors], warp and weft (unit vectors), class,
+    Cell data: shear [deg], thickness (factor on the flat fabric's, where the share of fibres stays), fibre_volume
+    (factor on the flat fabric's fibre volume fraction, where the thickness stays; there is as much more fibre on the
+    area in either case, so the two are the same number and never both apply), warp and weft (unit vectors), class,
     coverage (0 to 1), reason (the number of the `Status` why it is bare), source_face (the number of the
     face in the input file).
     """

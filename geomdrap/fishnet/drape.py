@@ -10,6 +10,7 @@ import numpy as np
 
 from geomdrap.errors import DrapeError, SurfaceError
 from geomdrap.fishnet import seed as seeds
+from geomdrap.fishnet.centroid import said
 from geomdrap.fishnet.effect import Effect, fabric_with, in_order, net_with, shift_with, surface_with
 from geomdrap.fishnet.extent import Extent, first_extent, grow, sides
 from geomdrap.fishnet.fabric import Fabric
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 
 
 FAR = 1e5  # part's diagonals from the origin: beyond, rounding reaches what ``TIE`` tells apart
+MOST_HEADING = 1e6  # degrees: more is a slip of the pen, and leaves few digits of the direction
 AXIS_ROUNDS, AXIS_STRAIN = 10, 1e-8  # marches until a sliding weft generator has its length: one, without skew
 SPREAD = 2.0  # cells: the facets' curvature is spread no further, which is below what the net resolves
 
@@ -62,10 +64,10 @@ def drape(
     """
     acting = in_order(effects)
     fabric = fabric_with(acting, fabric or Fabric())
-    if not math.isfinite(angle):
-        raise DrapeError(f"the heading must be a finite number of degrees, not {angle}")
+    if not abs(angle) <= MOST_HEADING:
+        raise DrapeError(f"the heading must be a number of degrees up to {MOST_HEADING:,.0f}, not {angle:g}")
     tool, (face, point, distance) = surface, seeds.locate(surface, origin)
-    surface = surface_with(acting, tool)
+    meant, surface = point, surface_with(acting, tool)
     if surface is not tool:
         face, point, _ = seeds.locate(surface, point)
     part = surface.only_component(face)
@@ -75,7 +77,8 @@ def drape(
     _check_distance(tool, origin, distance, pitch, project)
     mesh = mesh_of(part.lidded, SPREAD * pitch)
     point, moved = seeds.out_of_corner(part, origin, point, mesh, pitch)
-    notes = (*notes, *moved)
+    where = said(tool, meant, pitch) if isinstance(origin, str) and origin == "centroid" else ()
+    notes = (*notes, *where, *moved)
     start = _plant(part, point, math.fmod(angle, 360.0), mesh, reference, fabric, shift_with(acting, Shift()))
     extent = first_extent(part, start, pitch, reach)
     while True:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.errors import DrapeError
+from geomdrap.fishnet.centroid import on_part
 from geomdrap.geodesic.trace import trace
 from geomdrap.geodesic.vertex import ALONG_EDGE, fan_start, rim_angle, total_angle, turn_left
 
@@ -54,13 +55,14 @@ def locate(surface: Surface, origin: Origin) -> tuple[int, np.ndarray, float]:
         origin = int(match[1])
     if isinstance(origin, (int, np.integer)):
         return _vertex(surface, int(origin))
-    target = surface.centroid if isinstance(origin, str) else _vector(origin)
+    target = on_part(surface) if isinstance(origin, str) else _vector(origin)
     if target.shape != (3,) or not np.isfinite(target).all():
         raise DrapeError(f"origin {origin} is not three finite numbers x, y, z in mm")
     if np.abs(target).max() > 1e6 * max(float(np.abs(surface.bounds).max()), surface.diagonal):
         raise DrapeError(f"origin {origin} lies nowhere near {surface.source}; check its unit (mm)")
     near = surface.nearest(target[None])
-    return int(near.face[0]), near.point[0], float(near.distance[0])
+    away = surface.centroid if isinstance(origin, str) else target
+    return int(near.face[0]), near.point[0], float(np.linalg.norm(near.point[0] - away))
 
 
 def _vector(numbers: object) -> np.ndarray:

@@ -84,8 +84,10 @@ class Findings:
 
 
 def place(point: Iterable[float]) -> str:
-    """Write a point as (x, y, z) with six figures."""
-    return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
+    """Write a point as (x, y, z) with six figures, and a millionth of the largest number as none."""
+    numbers = [float(x) for x in point]
+    least = 1e-6 * max((abs(x) for x in numbers), default=0.0)
+    return "(" + ", ".join(f"{x if abs(x) > max(least, 1e-9) else 0.0:.6g}" for x in numbers) + ")"
 
 
 def places(points: tuple[Point, ...], total: int, show: int = 3) -> str:

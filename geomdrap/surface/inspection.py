@@ -14,7 +14,8 @@ from geomdrap.surface.types import Floats
 
 #: a sliver's height is under this share of its longest edge
 SLIVER = 1e-3
-SMALLEST, LARGEST = 10.0, 20_000.0
+#: mm across: smaller moulds are made for no ply (a 14-inch tray read as mm is 17), larger ones are rare
+SMALLEST, LARGEST = 25.0, 20_000.0
 
 
 def inspect(mesh: Prepared, areas: Floats, notes: tuple[str, ...]) -> Findings:

@@ -11,6 +11,8 @@ from geomdrap.errors import SurfaceError
 from geomdrap.surface.formats import READERS, RawMesh
 from geomdrap.surface.surface import Surface
 
+#: mm across beyond which a part read in inches or centimetres is more likely in mm (200 mm read in inches are 5 m)
+LARGEST_CONVERTED = 3_000.0
 #: units of length in mm
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 
@@ -40,9 +42,20 @@ def read_surface(
         face_numbers=raw.face_numbers,
         notes=raw.notes,
     )
+    surface = _with_doubt(surface, unit)
     if path.suffix.lower() == ".stl":
         surface = surface.numbered_as_welded()  # the points of an STL file have no numbers of their own
     return surface.flipped() if flip else surface
+
+
+def _with_doubt(surface: Surface, unit: str) -> Surface:
+    """The part with a hint where its numbers look like mm, but were read as inches or centimetres."""
+    if unit not in ("in", "cm") or surface.diagonal <= LARGEST_CONVERTED or surface.findings.unit_hint:
+        return surface
+    return surface.doubted(
+        f"read with --unit {unit} the part is {surface.diagonal / 1000:.3g} m across, in mm it would be "
+        f"{surface.diagonal / UNITS[unit]:.4g} mm: is the file in mm already?"
+    )
 
 
 def _read_raw(path: Path, tolerance: float | None) -> RawMesh:
@@ -53,8 +66,10 @@ def _read_raw(path: Path, tolerance: float | None) -> RawMesh:
         if not path.exists():
             raise SurfaceError(f"{path} does not exist; check the name of the part's file")
         reader = READERS.get(path.suffix.lower())
+        known = ", ".join(READERS)
+        if not path.suffix:
+            raise SurfaceError(f"{path.name}: the name must end with the file's format, one of {known}; rename it")
         if reader is None:
-            known = ", ".join(READERS)
             raise SurfaceError(f"{path.name}: files '{path.suffix}' cannot be read; use one of {known}")
         if path.stat().st_size == 0:
             raise SurfaceError(f"{path.name} is empty; export the part again")

@@ -231,6 +231,10 @@ class Surface:
         mesh = replace(self._mesh, points=np.array(points, dtype=np.float64, order="C"))
         return Surface._of(mesh, self.source, self.notes, self.findings)
 
+    def doubted(self, hint: str) -> Surface:
+        """The same part with a hint on its unit among its findings."""
+        return Surface._of(self._mesh, self.source, self.notes, replace(self.findings, unit_hint=hint))
+
     def flipped(self) -> Surface:
         """The same part with all normals turned."""
         return Surface._of(turn_over(self._mesh), self.source, self.notes, self.findings)

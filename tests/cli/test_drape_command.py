@@ -145,6 +145,18 @@ def test_the_summary_names_what_matters(run: Run, asked: dict[str, Any]) -> None
     assert max(map(len, summary.splitlines())) <= 110
 
 
+def test_areas_have_one_unit_whatever_their_size(run: Run, asked: dict[str, Any]) -> None:
+    asked["result"].area.part, asked["result"].area.fabric = 4.2e6 + 0.25, 0.0123
+    line = next(line for line in run("drape", "a.stl", *SOME).stdout.splitlines() if line.startswith("area"))
+    assert "part 4,200,000.2 mm², draped 1,550.0 mm², fabric 0.0123 mm²" in line
+
+
+def test_an_empty_name_is_no_folder_and_no_part(error_of: Callable[..., str]) -> None:
+    assert "the name is empty" in error_of("drape", "a.stl", "-o", "")
+    assert "the name is empty" in error_of("drape", "")
+    assert "the name is empty" in error_of("diff", "", "b")
+
+
 def test_quiet_leaves_warnings_only(run: Run, asked: dict[str, Any]) -> None:
     result = run("drape", "a.stl", "-q", *SOME)
     assert (result.stdout, result.stderr) == ("", "Warning: a warning\n")
@@ -184,8 +196,11 @@ def test_a_failing_format_leaves_all_earlier_files_untouched(
 
 def test_files_that_an_earlier_run_left_in_the_folder_are_named(run: Run, asked: dict[str, Any]) -> None:
     assert "earlier run" not in run("drape", "a.stl", *SOME).stderr
-    again = run("drape", "a.stl", "--outputs", "json,csv")
-    assert "Note: net.vtu, part.vtu in drape are of an earlier run\n" in again.stderr
+    again = run("drape", "a.stl", "--outputs", "json,csv", "--json", "--quiet")
+    words = "net.vtu, part.vtu in drape are of an earlier run: remove them, or use another folder (-o)"
+    assert f"Warning: {words}\n" in again.stderr  # quiet or not: whoever reads the folder reads two runs
+    assert words in json.loads(again.stdout)["warnings"]
+    assert "earlier run" not in Path("drape/drape.json").read_text()  # the same bytes for the same input
 
 
 def test_files_of_other_programs_in_the_folder_stay(run: Run, asked: dict[str, Any]) -> None:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from geomdrap.cli.values import Direction, Names, Number, Origin, Size, Triple
+from geomdrap.cli.values import Direction, NamedPath, Names, Number, Origin, Size, Triple
 
 ANGLE, PITCH = Number("DEG"), Number("MM", above=0.0)
 
@@ -60,7 +60,9 @@ def test_any_text_is_understood_or_refused_in_one_sentence(kind: click.ParamType
         (PITCH, "-3", "above 0"),
         (PITCH, "nan", "above 0"),
         (PITCH, "inf", "above 0"),
-        (Number("DEG", above=0, below=90), "90", "between 0 and 90"),
+        (Number("DEG", above=0, below=90), "90", "90 is not between 0 and 90, both excluded"),
+        (Number("MM", least=0.0), "-1", "-1 is not a finite number of at least 0"),
+        (NamedPath(), "", "the name is empty"),
         (Triple(), "1,2", "three finite numbers"),
         (Triple(), "1,2,3,4", "three finite numbers"),
         (Triple(), "1,2,x", "three finite numbers"),
@@ -82,7 +84,7 @@ def test_any_text_is_understood_or_refused_in_one_sentence(kind: click.ParamType
         (Size(), "1x2x3", "width and a height"),
         (Names(("a", "b")), "a,q", "'q' is not one of a, b"),
         (Names(("a", "b")), "", "is not one of a, b"),
-        (Names(("a", "b")), "none,a", "'none' is not one of a, b"),
+        (Names(("a", "b")), "none,a", "'none,a' asks for none and for others"),
     ],
 )
 def test_refuses(kind: click.ParamType, text: str, words: str) -> None:

@@ -16,10 +16,9 @@ ABOVE = Path(__file__).resolve().parents[3:]  # folders that may hold shared/ be
 
 
 def drape(surface, *effects, origin=(0.0, 0.0, 0.0), angle=0.0, pitch=5.0, **more):
-    """A net with effects written as on the command line."""
-    return gd.drape(
-        surface, origin, angle, pitch, effects=[gd.effects.parse(e) for e in effects], project=True, **more
-    )
+    """A net with effects written as on the command line; a name alone is the effect at its neutral values."""
+    acting = [gd.effects.parse(e) if ":" in e else gd.effects.make(e) for e in effects]
+    return gd.drape(surface, origin, angle, pitch, effects=acting, project=True, **more)
 
 
 def grid_of(net):

@@ -96,6 +96,11 @@ def test_a_typical_effect_changes_something_and_is_named_by_the_net(name):
         ("slip:coefficient", "not PARAMETER=NUMBER"),
         ("slip:coefficient=a", "not PARAMETER=NUMBER"),
         ("slip:coefficient=0.1,coefficient=0.2", "not PARAMETER=NUMBER"),
+        ("slip", "slip does nothing without a value of coefficient: give one, e.g. slip:coefficient=0.3"),
+        ("slip:", "e.g. slip:coefficient=0.3"),
+        ("locking", "e.g. locking:angle=40"),
+        ("placement", "a value of du or dv or dangle: give one, e.g. placement:du=2"),
+        ("crossing-slip:onset=10", "a value of share: give one, e.g. crossing-slip:share=0.15"),
     ],
 )
 def test_what_cannot_be_meant_is_refused_with_a_sentence(text, words):
@@ -105,7 +110,8 @@ def test_what_cannot_be_meant_is_refused_with_a_sentence(text, words):
 
 def test_values_are_read_as_written_and_the_rest_is_neutral():
     assert gd.effects.parse(" yarn-extension : strain_warp=1e-2 ").values == {"strain_warp": 0.01, "strain_weft": 0.0}
-    assert gd.effects.parse("locking").values == {"angle": 90.0}
+    assert gd.effects.parse("slip:coefficient=0").values == {"coefficient": 0.0}  # as in a loop over values
+    assert gd.effects.make("locking").values == {"angle": 90.0}
     assert gd.effects.make("slip", coefficient=0.6).values == {"coefficient": 0.6}
 
 
@@ -209,6 +215,7 @@ def test_a_model_file_gives_back_what_was_written(tmp_path):
         ('format = "geomdrap.model/1"\nspeed = 1', "'speed' is not known"),
         ('format = "geomdrap.model/1"\n[[effect]]\nname = "slip"\ncoefficient = 2.0', "from 0 to 1"),
         ('format = "geomdrap.model/1"\n[[effect]]\ncoefficient = 0.2', "has no name"),
+        ('format = "geomdrap.model/1"\n[[effect]]\nname = "slip"', "does nothing without a value of coefficient"),
         ('format = "geomdrap.model/1"\neffect = 3', r"table \[\[effect\]\]"),
     ],
 )

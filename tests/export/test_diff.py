@@ -190,6 +190,30 @@ def test_a_missing_file_is_a_change_and_an_additional_one_a_note(tmp_path: Path)
     assert "only in" in back.notes[0]
 
 
+def _clean(path: Path, result: object) -> Path:
+    folder = _folder(path, result)
+    report_json.write(result, folder / "drape.json", {"json": "drape.json", "csv": "nodes.csv"})
+    return folder
+
+
+def test_a_folder_of_one_run_gives_no_note(tmp_path: Path) -> None:
+    assert compare(_clean(tmp_path / "old", square_ply()), _clean(tmp_path / "new", square_ply())).notes == []
+
+
+def test_a_file_that_the_report_beside_it_does_not_list_is_said_to_be_of_another_run(tmp_path: Path) -> None:
+    old, new = _clean(tmp_path / "old", square_ply()), _clean(tmp_path / "new", square_ply())
+    report_json.write(square_ply(), new / "drape.json", {"json": "drape.json"})
+    (note,) = compare(old, new).notes
+    assert f"{new / 'nodes.csv'} was not written by the run that wrote drape.json" in note
+
+
+def test_a_report_of_an_earlier_run_beside_a_new_table_is_found_by_the_number_of_nodes(tmp_path: Path) -> None:
+    old, new = _clean(tmp_path / "old", square_ply()), _clean(tmp_path / "new", square_ply())
+    table.write(square_ply(cells=6), new / "nodes.csv")
+    (note,) = compare(old, new).notes
+    assert f"{new / 'nodes.csv'} has 48 nodes, drape.json beside it says 24" in note
+
+
 def test_the_json_form_has_all_of_it(tmp_path: Path) -> None:
     new = square_ply()
     new.net.points[1, 3, 2] += 0.005

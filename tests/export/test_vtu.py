@@ -37,7 +37,8 @@ def test_cell_fields_of_the_net_belong_to_their_cells(tmp_path: Path) -> None:
     mesh = meshio.read(tmp_path / "net.vtu")
     middle = mesh.points[mesh.cells[0].data].mean(axis=1)
     np.testing.assert_allclose(mesh.cell_data["shear"][0], middle[:, 0] / 10)
-    np.testing.assert_allclose(mesh.cell_data["thickness"][0], 1 / np.cos(np.radians(middle[:, 0] / 10)))
+    for factor in ("thickness", "fibre_volume"):
+        np.testing.assert_allclose(mesh.cell_data[factor][0], 1 / np.cos(np.radians(middle[:, 0] / 10)))
 
 
 def test_a_net_without_a_single_cell_can_be_written(tmp_path: Path) -> None:

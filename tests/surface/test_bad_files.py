@@ -61,6 +61,24 @@ def test_files_that_are_no_mesh_are_refused_in_every_format(tmp_path, ending, co
     assert ("is empty" in message) == (content == b"")
 
 
+@pytest.mark.parametrize("ending", [".msh", ".inp", ".bdf", ".vtk"])
+def test_bytes_that_are_no_text_are_refused_without_words_of_the_reader(tmp_path, ending):
+    (tmp_path / f"part{ending}").write_bytes(b"\xf2" + JUNK)
+    message = refusal(tmp_path / f"part{ending}")
+    assert "codec" not in message
+    assert "neither text nor what its name says" in message
+
+
+def test_a_face_with_a_vertex_that_is_not_there_is_said(tmp_path):
+    (tmp_path / "part.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
+    assert "a face names a vertex that is not there" in refusal(tmp_path / "part.obj")
+
+
+def test_a_name_without_an_ending_asks_for_one(tmp_path):
+    (tmp_path / "part").write_bytes(exported("stl"))
+    assert "must end with the file's format, one of .stl" in refusal(tmp_path / "part")
+
+
 def test_an_unknown_ending_lists_the_known_ones(tmp_path):
     (tmp_path / "part.docx").write_bytes(JUNK)
     message = refusal(tmp_path / "part.docx")

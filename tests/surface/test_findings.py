@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from raw_meshes import box, bumpy, fin, grid
 
-from geomdrap.surface import Surface, check
+from geomdrap.surface import Surface, check, findings
 
 
 def test_a_clean_mesh_has_nothing_to_report():
@@ -12,11 +12,16 @@ def test_a_clean_mesh_has_nothing_to_report():
 
 
 @pytest.mark.parametrize(
-    ("size", "words"), [(0.5, "use --unit m or --unit in"), (2e5, "was --unit right"), (300.0, "")]
+    ("size", "words"), [(0.5, "use --unit m or --unit in"), (8.0, "use --unit m or --unit in"), (2e5, "was --unit right"), (300.0, "")]
 )
 def test_a_doubtful_unit_is_pointed_out(size, words):
     hint = Surface(*bumpy(4, size)).findings.unit_hint
     assert (words in hint) if words else hint == ""
+
+
+def test_rounding_is_not_written_as_a_place():
+    assert findings.place((-1.50809e-16, -0.0, 75.0)) == "(0, 0, 75)"
+    assert findings.place((1.5e-7, 2e-7, 0.0)) == "(1.5e-07, 2e-07, 0)"
 
 
 def test_components_are_listed_by_area_with_their_centres():

@@ -131,6 +131,18 @@ def test_units_scale_to_mm(tmp_path, unit, scale):
     assert np.allclose(surface.points, points, rtol=1e-14, atol=1e-13)
 
 
+@pytest.mark.parametrize(("unit", "scale"), [("in", 25.4), ("cm", 100.0)])
+@pytest.mark.parametrize("ending", ["vtu", "stl"])
+def test_a_part_in_mm_that_is_read_in_another_unit_is_pointed_out(tmp_path, unit, scale, ending):
+    points, triangles = bumpy(4)
+    path = tmp_path / f"part.{ending}"
+    meshio.Mesh(points * scale / 25.4, [("triangle", triangles)]).write(path)
+    surface = read_surface(path, unit=unit, flip=True)
+    assert f"read with --unit {unit} the part is {surface.diagonal / 1000:.3g} m across" in surface.findings.unit_hint
+    assert "is the file in mm already?" in surface.findings.lines()[0]
+    assert read_surface(path).findings.unit_hint == ""
+
+
 def test_a_part_in_metres_is_the_same_as_in_mm(tmp_path):
     points, triangles = soup(*bumpy())
     meshio.Mesh(points, [("triangle", triangles)]).write(tmp_path / "mm.vtu")

@@ -32,6 +32,8 @@ def read(path: Path, tolerance: float | None) -> RawMesh:
         points = np.asarray(mesh.points, dtype=np.float64)
     except (Exception, SystemExit) as error:
         reason = (str(error).strip().splitlines() or [""])[0][:120]
+        if isinstance(error, UnicodeDecodeError):
+            reason = "it is neither text nor what its name says"
         detail = f" ({reason})" if reason and not reason.isdigit() else ""
         raise SurfaceError(
             f"{path.name} cannot be read as a {path.suffix} mesh{detail}; export the part again"

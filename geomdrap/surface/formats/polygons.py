@@ -100,5 +100,7 @@ def _has_points(loaded: Any) -> bool:
 
 
 def _first_line(error: Exception) -> str:
+    if isinstance(error, IndexError):
+        return "a face names a vertex that is not there"
     text = (str(error).strip().splitlines() or [""])[0][:120]
     return text or type(error).__name__
