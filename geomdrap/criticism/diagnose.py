@@ -51,6 +51,7 @@ def diagnose(
     pitch: float | None = None,
     sigma_xyz: float | None = None,
     sigma_shear: float | None = None,
+    sigma_direction: float | None = None,
     reference: tuple[float, float, float] | None = None,
     project: bool = False,
     effects: Sequence[str] | None = None,
@@ -58,15 +59,15 @@ def diagnose(
 ) -> Diagnosis:
     """Say which effect the geometric model lacks, by a measurement of the real ply.
 
-    ``origin``, ``angle`` (degrees), ``reference``, ``project`` and ``pitch`` (mm) as in ``drape``: what the person
-    who laid the ply believes. ``sigma_xyz`` mm and ``sigma_shear`` degrees: noise of single readings where the table
-    has none of its own. ``effects``: names to try, all of the library if None. ``progress`` is told the share done
-    and the step.
+    ``origin``, ``angle`` (degrees), ``reference``, ``project`` and ``pitch`` (mm) as in ``drape``: what the
+    person who laid the ply believes. ``sigma_xyz`` mm, ``sigma_shear`` and ``sigma_direction`` degrees: noise of
+    single readings where the table has none of its own. ``effects``: names to try, all of the library if None.
+    ``progress`` is told the share done and the step.
     Raises MeasurementError where the measurement does not go with the part.
     """
     progress(0.0, "matching")
     layup = Layup(origin, angle, reference, pitch, project)
-    experiment, notes = prepare(surface, measurement, layup, sigma_xyz, sigma_shear)
+    experiment, notes = prepare(surface, measurement, layup, sigma_xyz, sigma_shear, sigma_direction)
     names = [name for name in (available() if effects is None else effects) if name != "placement"]
     rounds = search(experiment, names, progress)
     return conclude(experiment, rounds, notes)

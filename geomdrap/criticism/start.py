@@ -29,7 +29,7 @@ FALLING = (0.3, 0.6, 0.9, 1.2, 1.5)  # of the way from a parameter's greatest va
 THRESHOLDS = (0.95, 0.8, 0.65, 0.5)  # of the largest shear
 SHAPES = (0.05, 0.2, 0.4, 0.6)  # of the range of a parameter that does nothing alone
 HALVINGS = 3  # of the gaps between probes
-SAME = 3.0  # of chi-square: probes this close do equally well
+SAME, SAME_SHARE = 3.0, 0.02  # of chi-square, or of the misfit: probes this close do equally well
 NOTHING = 1e-6  # of the noise: less is no signature
 BELOW_TOP = (0.85, 0.6)  # of the largest shear: thresholds at which to look once
 LEAST_GAIN = 4.0  # of chi-square under the likely scatter: less is not looked into
@@ -121,7 +121,8 @@ def start_values(
         now = square_beside(whiten(residual), shifts)
         halvings = 1 if make(effect).costly else HALVINGS
         probes = _probes(own[0], experiment.top_shear)
-        best = np.array([_narrowed(lambda x: misfit(np.array([x])), probes, now, halvings)])
+        same = max(SAME, SAME_SHARE * (now - len(residual)))
+        best = np.array([_narrowed(lambda x: misfit(np.array([x])), probes, now, same, halvings)])
     else:
         best = min(
             (_scaled(shape, own, acting, signature, whiten, residual, shifts) for shape in _shapes(own, acting)),
@@ -152,17 +153,19 @@ def _best_place(
     return min(starts, key=lambda start: start[0])[1]
 
 
-def _narrowed(misfit: Callable[[float], float], probes: Sequence[float], now: float, halvings: int) -> float:
-    """The best of the probes; where none is better than ``now``, after halving the gaps beside the best.
+def _narrowed(
+    misfit: Callable[[float], float], probes: Sequence[float], now: float, same: float, halvings: int
+) -> float:
+    """The best of the probes; where none is better than ``now`` by ``same``, after halving the gaps beside the best.
 
     Of probes that do equally well the last is taken: an effect that does nothing up to a threshold begins there.
     """
     known = {x: misfit(x) for x in probes}
     for _ in range(halvings):
         least = min(known.values())
-        if least < now - SAME:
+        if least < now - same:
             break
-        best = max(x for x, value in known.items() if value <= least + SAME)
+        best = max(x for x, value in known.items() if value <= least + same)
         order = sorted(known)
         k = order.index(best)
         for a, b in ((k, k + 1), (k - 1, k)):
