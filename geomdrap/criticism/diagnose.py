@@ -16,13 +16,13 @@ from geomdrap.criticism.evidence import FAMILY, LEAST_SHARE, rivals
 from geomdrap.criticism.experiment import Experiment, Layup
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
-from geomdrap.criticism.model import Fitted, fit_placement, refit, unfitted
+from geomdrap.criticism.model import Fitted, fit_placement, refined, refit, unfitted
 from geomdrap.criticism.plateau import Plateau, plateau
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round, judge_of, try_effects
 from geomdrap.criticism.table import tried_of, values_of
 from geomdrap.criticism.words import hints_for
-from geomdrap.effects import available
+from geomdrap.effects import available, make
 from geomdrap.measurement.match import match
 from geomdrap.measurement.outliers import find_outliers
 
@@ -138,19 +138,17 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
     model, scatter = rounds[0].base, rounds[0].scatter[0]
     if names:
         model, scatter = rounds[len(names) - 1].trial(names[-1])
-    # the final model, under the scatter that it leaves
-    rows = np.isfinite(model.fit.residual)
-    if scatter.size > 0.0 and rows.all():
-        model = refit(experiment, judge_of(experiment, rows).whiten(scatter), model)
+    experiment, model = _final(experiment, model, scatter)
     left = left_over(experiment, model, scatter)
     alike = rivals(rounds[len(names) - 1].evidence) if names else ()
     # a plateau that the model found does not foretell is no matter of chance: nothing else makes one
     if _locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):
         names, alike = [LOCKING], (LOCKING,)
-        model, scatter = rounds[0].trial(LOCKING)
+        experiment, model = _final(experiment, *rounds[0].trial(LOCKING))
+        scatter = rounds[0].trial(LOCKING)[1]
         left = left_over(experiment, model, scatter)
     verdict, candidates = _verdict(experiment, model, scatter, names, alike, left, worth_more(rounds[0], model))
-    steps = _steps(experiment, rounds, names)
+    steps = _steps(experiment, rounds, names, model)
     return Diagnosis(
         verdict=verdict,
         candidates=candidates,
@@ -167,6 +165,17 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         hints=hints_for(experiment, rounds, verdict, candidates, model, left),
         notes=(*notes, *_failures(experiment, rounds)),
     )
+
+
+def _final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Experiment, Fitted]:
+    """The model fitted to the end, under the scatter that it leaves, and the experiment with the nets for that."""
+    rows = np.isfinite(model.fit.residual)
+    whole = bool(rows.all())
+    whiten = judge_of(experiment, rows).whiten(scatter) if whole else white(experiment)
+    if any(make(name).costly for name in model.model.effects):
+        finer = experiment.finer()
+        return finer, refined(finer, whiten, model)
+    return experiment, refit(experiment, whiten, model) if scatter.size > 0.0 and whole else model
 
 
 def shear_stops(experiment: Experiment, model: Fitted, scatter: Scatter) -> Plateau | None:
@@ -236,11 +245,15 @@ def _misplaced(experiment: Experiment, model: Fitted, scatter: Scatter) -> bool:
     )
 
 
-def _steps(experiment: Experiment, rounds: Sequence[Round], names: Sequence[str]) -> tuple[Step, ...]:
+def _steps(
+    experiment: Experiment, rounds: Sequence[Round], names: Sequence[str], final: Fitted
+) -> tuple[Step, ...]:
     from geomdrap.criticism.table import errors_of
 
     plain = unfitted(experiment)
     models = [plain, rounds[0].base, *(rounds[k].trial(name)[0] for k, name in enumerate(names))]
+    if names:
+        models[-1] = final
     added = [None, "placement", *names]
     return tuple(Step(name, *errors_of(experiment, model)) for name, model in zip(added, models, strict=True))
 

@@ -105,6 +105,10 @@ class Experiment:
     def _flat(self, net: Net) -> np.ndarray:
         return flatten(predicted(net, self.measurement, self.frames, self.channels), self.mask)
 
+    def finer(self) -> Experiment:
+        """The same experiment with the net for what is costly twice as fine, but no finer than the other one."""
+        return replace(self, pitches=(self.pitches[0], max(0.5 * self.pitches[1], self.pitches[0])), coarseness={})
+
     def without(self, rows: np.ndarray) -> Experiment:
         """The same experiment without those points (n,) bool."""
         keep = self.mask & ~rows[:, None]

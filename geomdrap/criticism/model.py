@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 Whiten = Callable[[np.ndarray], np.ndarray]
 
 STEP = 0.1  # of a parameter's typical size: the differences with which slopes are taken
+REFINEMENTS = 3  # steps on a finer net
 FEW_STEPS = 7  # of a fit whose every drape is costly
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
 HOPELESS = 0.5  # of the way from the best model back to the base
@@ -74,10 +75,14 @@ class Model:
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A model fitted to an experiment: ``values`` (p,), and the fit's ``residual`` and ``slopes``, ``chi2``."""
+    """A model fitted to an experiment: ``values`` (p,), and the fit's ``residual`` and ``slopes``, ``chi2``.
+
+    ``doubt`` (p,): standard deviations that the pitch of the net adds to the values, as measured; None for none.
+    """
 
     model: Model
     fit: Fit
+    doubt: np.ndarray | None = None
 
     @property
     def values(self) -> np.ndarray:
@@ -204,6 +209,33 @@ def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     low, high = model.bounds
     predict = predictor(experiment, model)
     return Fitted(model, fit(predict, experiment.measured, whiten, old.values, model.steps, low, high))
+
+
+def refined(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
+    """A costly model fitted on from where it was, on the finer net of ``experiment``, with the slopes that it has.
+
+    Nets are of second order in the pitch: of what its halving changed in the values, a third is left.
+    """
+    predict = predictor(experiment, old.model)
+    low, high = old.model.bounds
+    values = old.values
+    residual = _filled(experiment.measured - predict(values), old.fit.residual)
+    for _ in range(REFINEMENTS):
+        step = np.linalg.lstsq(whiten(old.fit.slopes), whiten(residual), rcond=1e-9)[0]
+        there = np.clip(values + step, low, high)
+        new = _filled(experiment.measured - predict(there), residual)
+        if not (whiten(new) ** 2).sum() < (whiten(residual) ** 2).sum():
+            break
+        values, residual = there, new
+    lost = np.isnan(old.fit.residual)
+    chi2 = float((whiten(residual) ** 2).sum())
+    fit = Fit(values, np.where(lost, np.nan, residual), old.fit.slopes, chi2)
+    return Fitted(old.model, fit, np.abs(values - old.values) / 3.0)
+
+
+def _filled(residual: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """Residuals, those before where there are none, 0 where there never were."""
+    return np.nan_to_num(np.where(np.isnan(residual), before, residual))
 
 
 def slopes_at(experiment: Experiment, model: Model, values: np.ndarray) -> np.ndarray:
