@@ -16,7 +16,7 @@ from geomdrap.criticism.evidence import FAMILY, LEAST_SHARE, rivals
 from geomdrap.criticism.experiment import Experiment, Layup
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
-from geomdrap.criticism.model import Fitted, fit_placement, refined, refit, unfitted
+from geomdrap.criticism.model import Fitted, fit_placement, refined, refit, unfitted, with_fresh_slopes
 from geomdrap.criticism.plateau import Plateau, plateau
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round, judge_of, try_effects
@@ -175,7 +175,9 @@ def _final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Exp
     if any(make(name).costly for name in model.model.effects):
         finer = experiment.finer()
         return finer, refined(finer, whiten, model)
-    return experiment, refit(experiment, whiten, model) if scatter.size > 0.0 and whole else model
+    if scatter.size > 0.0 and whole:
+        model = refit(experiment, whiten, model)
+    return experiment, with_fresh_slopes(experiment, model)
 
 
 def shear_stops(experiment: Experiment, model: Fitted, scatter: Scatter) -> Plateau | None:

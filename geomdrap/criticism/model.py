@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -148,11 +148,12 @@ def add_effect(
     predict = predictor(experiment, model)
     kind = make(effect)
     slow = kind.costly or kind.stage == "surface"
+    seen = None
     if slow and likely is not None:
         seen = glance(experiment, predict, whiten, likely, base, effect)
         if seen.gain < LEAST_GAIN or (kind.costly and _hopeless(whiten, base, seen.after, least)):
             return _not_fitted(model, base, seen)
-    start = start_values(experiment, predict, whiten, base, effect)
+    start = start_values(experiment, predict, whiten, base, effect, seen)
     low, high = model.bounds
     # what the base already has keeps its slopes; the fit mends them where they mislead it
     own = slice(len(base.values), None)
@@ -238,8 +239,15 @@ def _filled(residual: np.ndarray, before: np.ndarray) -> np.ndarray:
     return np.nan_to_num(np.where(np.isnan(residual), before, residual))
 
 
-def slopes_at(experiment: Experiment, model: Model, values: np.ndarray) -> np.ndarray:
-    """Slopes (m, p) of the model's prediction."""
-    predict = predictor(experiment, model)
-    low, high = model.bounds
-    return take_slopes(predict, values, predict(values), model.steps, low, high)
+def with_fresh_slopes(experiment: Experiment, old: Fitted) -> Fitted:
+    """The same model with slopes by central differences where it is now: those of a fit are corrected as it goes."""
+    predict = predictor(experiment, old.model)
+    low, high = old.model.bounds
+    slopes = old.fit.slopes.copy()
+    for k, step in enumerate(old.model.steps):
+        ends = [old.values.copy(), old.values.copy()]
+        ends[0][k] = max(old.values[k] - step, low[k])
+        ends[1][k] = min(old.values[k] + step, high[k])
+        change = (predict(ends[1]) - predict(ends[0])) / (ends[1][k] - ends[0][k])
+        slopes[:, k] = np.where(np.isfinite(change), change, slopes[:, k])
+    return replace(old, fit=replace(old.fit, slopes=slopes))
