@@ -55,8 +55,8 @@ def compare(
 
     MEASURED is a table (CSV with commas, semicolons or tabs, a header, # comments): x, y, z in mm; u, v where
     marks were drawn on the flat fabric; shear in degrees; fibre directions warp_x, warp_y, warp_z and weft_x ...;
-    sigma_xyz, sigma_shear and replicate, where known. Without u, v a point is held against the nearest point of
-    the drape, and its position only along the normal.
+    sigma_xyz, sigma_shear, sigma_direction and replicate, where known. Without u, v a point is held
+    against the nearest point of the drape, and its position only along the normal.
 
     \b
     Examples:

@@ -58,7 +58,7 @@ def table_options(function: F) -> F:
             type=Mapping(),
             metavar="x=NAME,...",
             help="Headings of the table for x, y, z, u, v, i, j, shear, warp_x ..., weft_x ..., sigma_xyz, "
-            "sigma_shear, replicate, where they are others.",
+            "sigma_shear, sigma_direction, replicate, where they are others.",
         ),
     ):
         function = option(function)
@@ -66,8 +66,13 @@ def table_options(function: F) -> F:
 
 
 def setup_options(function: F) -> F:
-    """Add how the ply was laid and measured: --setup, or --origin, --angle, --pitch, --sigma-xyz, --sigma-shear."""
+    """Add how the ply was laid and measured: --setup, or --origin, --angle, --pitch, --sigma-xyz ..."""
     for option in (
+        click.option(
+            "--sigma-direction",
+            type=Number("DEG", above=0.0),
+            help="Standard deviation of measured fibre directions, degrees.  [default: from the data]",
+        ),
         click.option(
             "--sigma-shear",
             type=Number("DEG", above=0.0),
@@ -107,8 +112,8 @@ def setup_options(function: F) -> F:
             "--setup",
             type=click.Path(path_type=Path),
             metavar="FILE",
-            help="TOML file with origin, angle, pitch, sigma_xyz, sigma_shear, reference, mark_spacing, mark_origin; "
-            "options go before it.",
+            help="TOML file with origin, angle, pitch, sigma_xyz, sigma_shear, sigma_direction, reference, "
+            "mark_spacing, mark_origin; options go before it.",
         ),
     ):
         function = option(function)

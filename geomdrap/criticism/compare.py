@@ -40,6 +40,7 @@ def compare(
     pitch: float | None = None,
     sigma_xyz: float | None = None,
     sigma_shear: float | None = None,
+    sigma_direction: float | None = None,
     effects: Sequence[Effect] = (),
     reference: Sequence[float] | None = None,
     project: bool = False,
@@ -47,15 +48,17 @@ def compare(
     """Drape a part and compare the net with measured points.
 
     ``origin``, ``angle``, ``effects``, ``reference`` and ``project`` as for `drape`; ``pitch`` mm is chosen from the
-    part, and so that drawn marks lie on nodes, where it is None. ``sigma_xyz`` (mm, per coordinate) and
-    ``sigma_shear`` (degrees) are the noise of the measurement where it has no columns for it; where they are None
-    too the noise comes from replicates, or from the differences of neighbours.
+    part, and so that drawn marks lie on nodes, where it is None. ``sigma_xyz`` (mm, per coordinate),
+    ``sigma_shear`` and ``sigma_direction`` (degrees) are the noise of the measurement where it has no columns for
+    it; where they are None too the noise comes from replicates, or from the differences of neighbours.
     Raises MeasurementError where the table cannot belong to the part, SurfaceError and DrapeError as `drape` does.
     """
     warnings = require_on_part(surface, measurement)
     pitch, notes = suited_pitch(surface, measurement, pitch)
     net = drape(surface, origin, angle, pitch, effects=effects, reference=reference, project=project)
-    result = compare_net(net, measurement, sigma_xyz=sigma_xyz, sigma_shear=sigma_shear)
+    result = compare_net(
+        net, measurement, sigma_xyz=sigma_xyz, sigma_shear=sigma_shear, sigma_direction=sigma_direction
+    )
     return with_messages(result, notes, warnings)
 
 
@@ -78,7 +81,12 @@ def suited_pitch(
 
 
 def compare_net(
-    net: Net, measurement: Measurement, *, sigma_xyz: float | None = None, sigma_shear: float | None = None
+    net: Net,
+    measurement: Measurement,
+    *,
+    sigma_xyz: float | None = None,
+    sigma_shear: float | None = None,
+    sigma_direction: float | None = None,
 ) -> Comparison:
     """Compare a net, from whatever model, with measured points; see `compare`."""
     matched = match(net, measurement)
@@ -91,7 +99,9 @@ def compare_net(
         None if measured is None else turns(predicted, measured, matched.normal)
         for predicted, measured in ((matched.warp, measurement.warp), (matched.weft, measurement.weft))
     )
-    noises, said = _noises(measurement, matched, away, shear, (warp, weft), sigma_xyz, sigma_shear)
+    noises, said = _noises(
+        measurement, matched, away, shear, (warp, weft), (sigma_xyz, sigma_shear, sigma_direction)
+    )
     outliers = find_outliers(net, measurement, matched, noises[0].sigma, noises[1].sigma)
     return Comparison(
         net=net,
@@ -137,10 +147,10 @@ def _noises(
     away: np.ndarray,
     shear: np.ndarray | None,
     turned: tuple[np.ndarray | None, np.ndarray | None],
-    sigma_xyz: float | None,
-    sigma_shear: float | None,
+    given: tuple[float | None, float | None, float | None],
 ) -> tuple[tuple[Noise, Noise, Noise], tuple[str, ...]]:
-    """Noise of coordinates, shear and directions, and warnings about them."""
+    """Noise of coordinates, shear and directions, and warnings about them; ``given`` of the same three."""
+    sigma_xyz, sigma_shear, sigma_direction = given
     group = repeats_of(measurement)
     places = np.column_stack([matched.u, matched.v])
     residual = away if measurement.labelled else np.einsum("ij,ij->i", away, matched.normal)[:, None]
@@ -156,7 +166,9 @@ def _noises(
     of_turn = Noise(None, None)
     if known:
         turn = np.hstack(known)
-        of_turn, _ = noise_of("the directions", None, None, turn, group, turn, places)
+        column = measurement.sigma_direction
+        of_turn, last = noise_of("sigma_direction", column, sigma_direction, turn, group, turn, places)
+        more = (*more, *last)
     return (xyz, of_shear, of_turn), (*said, *more)
 
 

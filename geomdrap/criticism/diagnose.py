@@ -16,13 +16,13 @@ from geomdrap.criticism.evidence import FAMILY, LEAST_SHARE, rivals
 from geomdrap.criticism.experiment import Experiment, Layup
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
-from geomdrap.criticism.model import Fitted, fit_placement, refit, unfitted
+from geomdrap.criticism.model import Fitted, fit_placement, refined, refit, unfitted, with_fresh_slopes
 from geomdrap.criticism.plateau import Plateau, plateau
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round, judge_of, try_effects
 from geomdrap.criticism.table import tried_of, values_of
 from geomdrap.criticism.words import hints_for
-from geomdrap.effects import available
+from geomdrap.effects import available, make
 from geomdrap.measurement.match import match
 from geomdrap.measurement.outliers import find_outliers
 
@@ -51,6 +51,7 @@ def diagnose(
     pitch: float | None = None,
     sigma_xyz: float | None = None,
     sigma_shear: float | None = None,
+    sigma_direction: float | None = None,
     reference: tuple[float, float, float] | None = None,
     project: bool = False,
     effects: Sequence[str] | None = None,
@@ -58,15 +59,15 @@ def diagnose(
 ) -> Diagnosis:
     """Say which effect the geometric model lacks, by a measurement of the real ply.
 
-    ``origin``, ``angle`` (degrees), ``reference``, ``project`` and ``pitch`` (mm) as in ``drape``: what the person
-    who laid the ply believes. ``sigma_xyz`` mm and ``sigma_shear`` degrees: noise of single readings where the table
-    has none of its own. ``effects``: names to try, all of the library if None. ``progress`` is told the share done
-    and the step.
+    ``origin``, ``angle`` (degrees), ``reference``, ``project`` and ``pitch`` (mm) as in ``drape``: what the
+    person who laid the ply believes. ``sigma_xyz`` mm, ``sigma_shear`` and ``sigma_direction`` degrees: noise of
+    single readings where the table has none of its own. ``effects``: names to try, all of the library if None.
+    ``progress`` is told the share done and the step.
     Raises MeasurementError where the measurement does not go with the part.
     """
     progress(0.0, "matching")
     layup = Layup(origin, angle, reference, pitch, project)
-    experiment, notes = prepare(surface, measurement, layup, sigma_xyz, sigma_shear)
+    experiment, notes = prepare(surface, measurement, layup, sigma_xyz, sigma_shear, sigma_direction)
     names = [name for name in (available() if effects is None else effects) if name != "placement"]
     rounds = search(experiment, names, progress)
     return conclude(experiment, rounds, notes)
@@ -137,19 +138,17 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
     model, scatter = rounds[0].base, rounds[0].scatter[0]
     if names:
         model, scatter = rounds[len(names) - 1].trial(names[-1])
-    # the final model, under the scatter that it leaves
-    rows = np.isfinite(model.fit.residual)
-    if scatter.size > 0.0 and rows.all():
-        model = refit(experiment, judge_of(experiment, rows).whiten(scatter), model)
+    experiment, model = _final(experiment, model, scatter)
     left = left_over(experiment, model, scatter)
     alike = rivals(rounds[len(names) - 1].evidence) if names else ()
     # a plateau that the model found does not foretell is no matter of chance: nothing else makes one
     if _locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):
         names, alike = [LOCKING], (LOCKING,)
-        model, scatter = rounds[0].trial(LOCKING)
+        experiment, model = _final(experiment, *rounds[0].trial(LOCKING))
+        scatter = rounds[0].trial(LOCKING)[1]
         left = left_over(experiment, model, scatter)
     verdict, candidates = _verdict(experiment, model, scatter, names, alike, left, worth_more(rounds[0], model))
-    steps = _steps(experiment, rounds, names)
+    steps = _steps(experiment, rounds, names, model)
     return Diagnosis(
         verdict=verdict,
         candidates=candidates,
@@ -168,14 +167,28 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
     )
 
 
+def _final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Experiment, Fitted]:
+    """The model fitted to the end, under the scatter that it leaves, and the experiment with the nets for that."""
+    rows = np.isfinite(model.fit.residual)
+    whole = bool(rows.all())
+    whiten = judge_of(experiment, rows).whiten(scatter) if whole else white(experiment)
+    if any(make(name).costly for name in model.model.effects):
+        finer = experiment.finer()
+        return finer, refined(finer, whiten, model)
+    if scatter.size > 0.0 and whole:
+        model = refit(experiment, whiten, model)
+    return experiment, with_fresh_slopes(experiment, model)
+
+
 def shear_stops(experiment: Experiment, model: Fitted, scatter: Scatter) -> Plateau | None:
     """The plateau of the shear where a model foretells more, if shear was measured and has one."""
     if "shear" not in experiment.channels:
         return None
     own = experiment.channel_of() == experiment.channels.index("shear")
     measured, predicted = experiment.measured[own], (experiment.measured - model.fit.residual)[own]
-    noise = float(np.hypot(np.median(experiment.noise[own]), scatter.shear))
-    return plateau(measured, predicted, noise)
+    noise = float(np.median(experiment.noise[own]))
+    # a model that is off makes its misfit pass for scatter: the noise alone is tried as well
+    return plateau(measured, predicted, noise) or plateau(measured, predicted, float(np.hypot(noise, scatter.shear)))
 
 
 def _locks(experiment: Experiment, first: Round) -> bool:
@@ -234,11 +247,15 @@ def _misplaced(experiment: Experiment, model: Fitted, scatter: Scatter) -> bool:
     )
 
 
-def _steps(experiment: Experiment, rounds: Sequence[Round], names: Sequence[str]) -> tuple[Step, ...]:
+def _steps(
+    experiment: Experiment, rounds: Sequence[Round], names: Sequence[str], final: Fitted
+) -> tuple[Step, ...]:
     from geomdrap.criticism.table import errors_of
 
     plain = unfitted(experiment)
     models = [plain, rounds[0].base, *(rounds[k].trial(name)[0] for k, name in enumerate(names))]
+    if names:
+        models[-1] = final
     added = [None, "placement", *names]
     return tuple(Step(name, *errors_of(experiment, model)) for name, model in zip(added, models, strict=True))
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from geomdrap.criticism.smooth import smoothed
 from geomdrap.fishnet import Effect, Net, drape
 from geomdrap.fishnet.effect import in_order, surface_with
 
@@ -93,18 +94,20 @@ class Experiment:
         )
 
     def _surface_under(self, effects: Sequence[Effect]) -> tuple[Surface, list[Effect]]:
-        """The surface with the effects that act on it, made once for each of their values; and the other effects."""
+        """The smooth surface with the effects that act on it, made once for each of their values; other effects."""
         acting = [e for e in effects if e.stage == "surface"]
         others = [e for e in effects if e.stage != "surface"]
-        if not acting:
-            return self.surface, others
         key = "+".join(map(repr_of, in_order(acting)))
         if key not in self.surfaces:
-            keep(self.surfaces, key, surface_with(in_order(acting), self.surface))
+            keep(self.surfaces, key, smoothed(surface_with(in_order(acting), self.surface)))
         return self.surfaces[key], others
 
     def _flat(self, net: Net) -> np.ndarray:
         return flatten(predicted(net, self.measurement, self.frames, self.channels), self.mask)
+
+    def finer(self) -> Experiment:
+        """The same experiment with the net for what is costly twice as fine, but no finer than the other one."""
+        return replace(self, pitches=(self.pitches[0], max(0.5 * self.pitches[1], self.pitches[0])), coarseness={})
 
     def without(self, rows: np.ndarray) -> Experiment:
         """The same experiment without those points (n,) bool."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 Whiten = Callable[[np.ndarray], np.ndarray]
 
 STEP = 0.1  # of a parameter's typical size: the differences with which slopes are taken
+REFINEMENTS = 3  # steps on a finer net
 FEW_STEPS = 7  # of a fit whose every drape is costly
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
 HOPELESS = 0.5  # of the way from the best model back to the base
@@ -74,10 +75,14 @@ class Model:
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A model fitted to an experiment: ``values`` (p,), and the fit's ``residual`` and ``slopes``, ``chi2``."""
+    """A model fitted to an experiment: ``values`` (p,), and the fit's ``residual`` and ``slopes``, ``chi2``.
+
+    ``doubt`` (p,): standard deviations that the pitch of the net adds to the values, as measured; None for none.
+    """
 
     model: Model
     fit: Fit
+    doubt: np.ndarray | None = None
 
     @property
     def values(self) -> np.ndarray:
@@ -143,11 +148,12 @@ def add_effect(
     predict = predictor(experiment, model)
     kind = make(effect)
     slow = kind.costly or kind.stage == "surface"
+    seen = None
     if slow and likely is not None:
         seen = glance(experiment, predict, whiten, likely, base, effect)
         if seen.gain < LEAST_GAIN or (kind.costly and _hopeless(whiten, base, seen.after, least)):
             return _not_fitted(model, base, seen)
-    start = start_values(experiment, predict, whiten, base, effect)
+    start = start_values(experiment, predict, whiten, base, effect, seen)
     low, high = model.bounds
     # what the base already has keeps its slopes; the fit mends them where they mislead it
     own = slice(len(base.values), None)
@@ -206,8 +212,42 @@ def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     return Fitted(model, fit(predict, experiment.measured, whiten, old.values, model.steps, low, high))
 
 
-def slopes_at(experiment: Experiment, model: Model, values: np.ndarray) -> np.ndarray:
-    """Slopes (m, p) of the model's prediction."""
-    predict = predictor(experiment, model)
-    low, high = model.bounds
-    return take_slopes(predict, values, predict(values), model.steps, low, high)
+def refined(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
+    """A costly model fitted on from where it was, on the finer net of ``experiment``, with the slopes that it has.
+
+    Nets are of second order in the pitch: of what its halving changed in the values, a third is left.
+    """
+    predict = predictor(experiment, old.model)
+    low, high = old.model.bounds
+    values = old.values
+    residual = _filled(experiment.measured - predict(values), old.fit.residual)
+    for _ in range(REFINEMENTS):
+        step = np.linalg.lstsq(whiten(old.fit.slopes), whiten(residual), rcond=1e-9)[0]
+        there = np.clip(values + step, low, high)
+        new = _filled(experiment.measured - predict(there), residual)
+        if not (whiten(new) ** 2).sum() < (whiten(residual) ** 2).sum():
+            break
+        values, residual = there, new
+    lost = np.isnan(old.fit.residual)
+    chi2 = float((whiten(residual) ** 2).sum())
+    fit = Fit(values, np.where(lost, np.nan, residual), old.fit.slopes, chi2)
+    return Fitted(old.model, fit, np.abs(values - old.values) / 3.0)
+
+
+def _filled(residual: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """Residuals, those before where there are none, 0 where there never were."""
+    return np.nan_to_num(np.where(np.isnan(residual), before, residual))
+
+
+def with_fresh_slopes(experiment: Experiment, old: Fitted) -> Fitted:
+    """The same model with slopes by central differences where it is now: those of a fit are corrected as it goes."""
+    predict = predictor(experiment, old.model)
+    low, high = old.model.bounds
+    slopes = old.fit.slopes.copy()
+    for k, step in enumerate(old.model.steps):
+        ends = [old.values.copy(), old.values.copy()]
+        ends[0][k] = max(old.values[k] - step, low[k])
+        ends[1][k] = min(old.values[k] + step, high[k])
+        change = (predict(ends[1]) - predict(ends[0])) / (ends[1][k] - ends[0][k])
+        slopes[:, k] = np.where(np.isfinite(change), change, slopes[:, k])
+    return replace(old, fit=replace(old.fit, slopes=slopes))

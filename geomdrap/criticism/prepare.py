@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 MOST_POINTS = 400  # with a dense covariance; more points are thinned out evenly
 POSITION = ("along", "across", "normal")
+OPTIONS = {"position": "--sigma-xyz", "shear": "--sigma-shear", "direction": "--sigma-direction"}
 NOT_POSITION = {"shear": "shear", "warp": "direction", "weft": "direction"}
 
 
@@ -30,10 +31,12 @@ def prepare(
     layup: Layup,
     sigma_xyz: float | None = None,
     sigma_shear: float | None = None,
+    sigma_direction: float | None = None,
 ) -> tuple[Experiment, tuple[str, ...]]:
     """The experiment, without the points that stand out from their neighbours, and notes on what was chosen.
 
-    ``sigma_xyz`` mm and ``sigma_shear`` degrees apply where the table has no noise of its own; with neither, noise is
+    ``sigma_xyz`` mm, ``sigma_shear`` and ``sigma_direction`` degrees apply where the table has no noise of its own;
+    shear is the difference of two directions and says their noise where nothing else does. With neither, noise is
     read from how neighbouring residuals differ. Raises MeasurementError where nothing can be compared.
     """
     require_on_part(surface, measurement)
@@ -67,7 +70,10 @@ def prepare(
     channels, values = measured_table(measurement, found, frames)
     table = predicted(net, measurement, frames, channels)
     mask = np.isfinite(values) & np.isfinite(table) & np.isfinite(at).all(axis=1)[:, None]
-    sigma, more = _noise(measurement, channels, values, values - table, at, sigma_xyz, sigma_shear)
+    if sigma_direction is None and measurement.sigma_direction is None and sigma_shear is not None:
+        sigma_direction = sigma_shear / float(np.sqrt(2.0))
+    given = (sigma_xyz, sigma_shear, sigma_direction)
+    sigma, more = _noise(measurement, channels, values, values - table, at, given)
     for outlier in find_outliers(net, measurement, found, *_by_kind(channels, sigma)):
         kind = [name in POSITION for name in channels]
         mask[outlier.row] &= ~np.array(kind) if outlier.kind == "position" else np.array(kind)
@@ -121,26 +127,25 @@ def _noise(
     values: np.ndarray,
     residual: np.ndarray,
     at: np.ndarray,
-    sigma_xyz: float | None,
-    sigma_shear: float | None,
+    given: tuple[float | None, float | None, float | None],
 ) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Noise (n, c) of every value, and warnings. Raises MeasurementError where there is no way to know it."""
+    """Noise (n, c) of every value, and warnings; ``given`` for positions, shear and directions.
+
+    Raises MeasurementError where there is no way to know it.
+    """
     sigma = np.full(values.shape, np.nan)
     repeats = repeats_of(measurement)
     warnings: tuple[str, ...] = ()
-    for kind, column, given in (
-        ("position", measurement.sigma_xyz, sigma_xyz),
-        ("shear", measurement.sigma_shear, sigma_shear),
-        ("direction", measurement.sigma_shear, sigma_shear),
-    ):
+    columns = (measurement.sigma_xyz, measurement.sigma_shear, measurement.sigma_direction)
+    for kind, option, column, told in zip(OPTIONS, OPTIONS.values(), columns, given, strict=True):
         own = [c for c, name in enumerate(channels) if NOT_POSITION.get(name, "position") == kind]
         if not own:
             continue
-        noise, more = noise_of(kind, column, given, values[:, own], repeats, residual[:, own], at)
+        noise, more = noise_of(kind, column, told, values[:, own], repeats, residual[:, own], at)
         if noise.sigma is None:
             raise MeasurementError(
                 f"{measurement.source}: there are too few points to read the noise of the {kind} from them; give it "
-                f"({'--sigma-xyz' if kind == 'position' else '--sigma-shear'})"
+                f"({option})"
             )
         sigma[:, own] = noise.sigma[:, None]
         warnings += more

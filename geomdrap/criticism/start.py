@@ -29,9 +29,10 @@ FALLING = (0.3, 0.6, 0.9, 1.2, 1.5)  # of the way from a parameter's greatest va
 THRESHOLDS = (0.95, 0.8, 0.65, 0.5)  # of the largest shear
 SHAPES = (0.05, 0.2, 0.4, 0.6)  # of the range of a parameter that does nothing alone
 HALVINGS = 3  # of the gaps between probes
-SAME = 3.0  # of chi-square: probes this close do equally well
+SAME, SAME_SHARE = 3.0, 0.02  # of chi-square, or of the misfit: probes this close do equally well
 NOTHING = 1e-6  # of the noise: less is no signature
 BELOW_TOP = (0.85, 0.6)  # of the largest shear: thresholds at which to look once
+BELOW_SEEN = (0.5, 0.75)  # of a large value at which an effect shows: where it may begin to
 LEAST_GAIN = 4.0  # of chi-square under the likely scatter: less is not looked into
 
 
@@ -77,6 +78,8 @@ def _first_looks(own: Sequence[Parameter], top: float) -> list[np.ndarray]:
             each.append([_clip(f * top, q) for f in BELOW_TOP] if q.unit == "deg" else [q.typical])
         elif len(own) == 1 and q.low < q.neutral:
             each.append([q.typical, 2.0 * q.neutral - q.typical])
+        elif len(own) == 1:  # what has a threshold, as a radius that the tool undercuts, shows when it is large
+            each.append([q.typical, _clip(GROWING[-1] * q.typical, q)])
         else:
             each.append([q.typical])
     return [np.array(values) for values in product(*each)]
@@ -88,8 +91,9 @@ def start_values(
     whiten: Whiten,
     base: Fitted,
     effect: str,
+    seen: Glance | None = None,
 ) -> np.ndarray:
-    """Values to begin with: the best of a few probes of the new effect."""
+    """Values to begin with: the best of a few probes of the new effect; ``seen``: what one look at it showed."""
     own = make(effect).parameters
     p = len(base.values)
     neutral = np.array([q.neutral for q in own])
@@ -121,7 +125,10 @@ def start_values(
         now = square_beside(whiten(residual), shifts)
         halvings = 1 if make(effect).costly else HALVINGS
         probes = _probes(own[0], experiment.top_shear)
-        best = np.array([_narrowed(lambda x: misfit(np.array([x])), probes, now, halvings)])
+        if seen is not None and seen.values[0] > own[0].typical > own[0].neutral:
+            probes = sorted({*probes, *(f * float(seen.values[0]) for f in BELOW_SEEN)})
+        same = max(SAME, SAME_SHARE * (now - len(residual)))
+        best = np.array([_narrowed(lambda x: misfit(np.array([x])), probes, now, same, halvings)])
     else:
         best = min(
             (_scaled(shape, own, acting, signature, whiten, residual, shifts) for shape in _shapes(own, acting)),
@@ -152,17 +159,19 @@ def _best_place(
     return min(starts, key=lambda start: start[0])[1]
 
 
-def _narrowed(misfit: Callable[[float], float], probes: Sequence[float], now: float, halvings: int) -> float:
-    """The best of the probes; where none is better than ``now``, after halving the gaps beside the best.
+def _narrowed(
+    misfit: Callable[[float], float], probes: Sequence[float], now: float, same: float, halvings: int
+) -> float:
+    """The best of the probes; where none is better than ``now`` by ``same``, after halving the gaps beside the best.
 
     Of probes that do equally well the last is taken: an effect that does nothing up to a threshold begins there.
     """
     known = {x: misfit(x) for x in probes}
     for _ in range(halvings):
         least = min(known.values())
-        if least < now - SAME:
+        if least < now - same:
             break
-        best = max(x for x, value in known.items() if value <= least + SAME)
+        best = max(x for x, value in known.items() if value <= least + same)
         order = sorted(known)
         k = order.index(best)
         for a, b in ((k, k + 1), (k - 1, k)):

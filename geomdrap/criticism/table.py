@@ -37,6 +37,8 @@ def values_of(experiment: Experiment, model: Fitted, scatter: Scatter, effect: s
     """Fitted parameters of an effect with their standard deviations."""
     rows = np.isfinite(model.fit.residual)
     sigma = deviations(judge_of(experiment, rows).whiten(scatter)(model.fit.slopes[rows]))
+    if model.doubt is not None:
+        sigma = np.hypot(sigma, model.doubt)
     return tuple(
         Value(p.name, float(model.values[k]), float(sigma[k]), p.unit) for p, k in model.parameters_of(effect)
     )

@@ -26,6 +26,7 @@ COLUMNS = {
     "weft_z": "weft direction",
     "sigma_xyz": "standard deviation of each coordinate, mm",
     "sigma_shear": "standard deviation of the shear angle, degrees",
+    "sigma_direction": "standard deviation of the yarns' directions, degrees",
     "replicate": "number of the repetition",
 }
 """Names of the columns that are understood, and what they hold."""

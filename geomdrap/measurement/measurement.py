@@ -14,11 +14,12 @@ class Measurement:
     """Measured points of a draped ply, a row each.
 
     ``source`` is the file's name, for messages. ``points`` (n, 3) mm. ``u``, ``v`` (n,) mm: fabric coordinates of
-    marks drawn on the flat fabric, None where there were none. ``shear`` (n,) degrees, NaN where it was not measured,
-    or None. ``warp``, ``weft`` (n, 3) unit fibre directions, with either sign, NaN where not measured, or None.
-    ``sigma_xyz`` (n,) mm per coordinate and ``sigma_shear`` (n,) degrees: standard deviations of the rows, NaN where
-    the table leaves them open, or None. ``replicate`` (n,) number of the repetition, or None. ``row`` (n,) line in
-    the file. ``notes`` say what the reader did, ``warnings`` what the user should look at.
+    marks drawn on the flat fabric, None where there were none. ``shear`` (n,) degrees, NaN where it was not
+    measured, or None. ``warp``, ``weft`` (n, 3) unit fibre directions, with either sign, NaN where not measured,
+    or None. ``sigma_xyz`` (n,) mm per coordinate, ``sigma_shear`` and ``sigma_direction`` (n,) degrees: standard
+    deviations of the rows, NaN where the table leaves them open, or None. ``replicate`` (n,) number of the
+    repetition, or None. ``row`` (n,) line in the file. ``notes`` say what the reader did, ``warnings`` what the
+    user should look at.
     """
 
     source: str
@@ -30,6 +31,7 @@ class Measurement:
     weft: np.ndarray | None = None
     sigma_xyz: np.ndarray | None = None
     sigma_shear: np.ndarray | None = None
+    sigma_direction: np.ndarray | None = None
     replicate: np.ndarray | None = None
     row: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
     notes: tuple[str, ...] = ()

@@ -14,7 +14,8 @@ from geomdrap.measurement.measurement import Measurement
 from geomdrap.measurement.table import Table, read_table
 
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
-OPTIONAL = ("shear", "sigma_xyz", "sigma_shear", "warp_x", "warp_y", "warp_z", "weft_x", "weft_y", "weft_z")
+SIGMAS = ("sigma_xyz", "sigma_shear", "sigma_direction")
+OPTIONAL = ("shear", *SIGMAS, "warp_x", "warp_y", "warp_z", "weft_x", "weft_y", "weft_z")
 """Quantities that may be open (an empty cell, or nan) in some rows."""
 
 
@@ -54,6 +55,7 @@ def read_measurement(
         weft=_directions(table, cells, "weft"),
         sigma_xyz=_sigma(table, chosen, cells, "sigma_xyz"),
         sigma_shear=_sigma(table, chosen, cells, "sigma_shear"),
+        sigma_direction=_sigma(table, chosen, cells, "sigma_direction"),
         replicate=_replicate(table, chosen, cells),
         row=np.array(table.lines, np.int64),
         notes=notes + said,

@@ -17,10 +17,10 @@ Triple = tuple[float, float, float]
 class Setup:
     """Where the ply started and how well it was measured; None where it is not known.
 
-    ``origin`` is ``"centroid"``, ``"vertex:N"`` or a point (3,) mm; ``angle`` the heading of the warp, degrees from
-    ``reference`` (3,) (default the part's +x); ``pitch`` side of a cell, mm; ``sigma_xyz`` mm per coordinate and
-    ``sigma_shear`` degrees: standard deviations of the instrument; ``mark_spacing`` (2,) mm and ``mark_origin`` (2,)
-    place the marks whose numbers the table has instead of u, v.
+    ``origin`` is ``"centroid"``, ``"vertex:N"`` or a point (3,) mm; ``angle`` the heading of the warp, degrees
+    from ``reference`` (3,) (default the part's +x); ``pitch`` side of a cell, mm; ``sigma_xyz`` mm per
+    coordinate, ``sigma_shear`` and ``sigma_direction`` degrees: standard deviations of the instrument;
+    ``mark_spacing`` (2,) mm and ``mark_origin`` (2,) place the marks whose numbers the table has instead of u, v.
     """
 
     origin: str | Triple | None = None
@@ -28,13 +28,14 @@ class Setup:
     pitch: float | None = None
     sigma_xyz: float | None = None
     sigma_shear: float | None = None
+    sigma_direction: float | None = None
     reference: Triple | None = None
     mark_spacing: tuple[float, float] | None = None
     mark_origin: tuple[float, float] | None = None
 
 
 KEYS = tuple(f.name for f in fields(Setup))
-ABOVE_ZERO = ("pitch", "sigma_xyz", "sigma_shear")
+ABOVE_ZERO = ("pitch", "sigma_xyz", "sigma_shear", "sigma_direction")
 
 
 def read_setup(path: str | Path) -> Setup:

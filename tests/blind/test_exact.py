@@ -155,3 +155,42 @@ def test_the_closing_of_a_tool_without_tight_valleys_is_the_tool():
     saddle = Tool("saddle", bowl(0.004, -0.004), (60.0, 60.0))
     xy = np.random.default_rng(0).uniform(-50.0, 50.0, (50, 2))
     assert closed(saddle, 60.0)(xy)[0][:, 2] == pytest.approx(saddle.height(*xy.T), abs=0.02)
+
+
+def latitudes(ply, radius):
+    """Where yarns lie that keep their distance from the warp generator of a sphere: on circles of latitude."""
+    u, v = np.meshgrid(ply.u, ply.v, indexing="ij")
+    latitude = v / radius
+    longitude = u / (radius * np.cos(latitude))
+    points = np.stack([np.cos(latitude) * np.sin(longitude), np.sin(latitude), np.cos(latitude) * np.cos(longitude)])
+    return radius * points.transpose(1, 2, 0), np.degrees(np.arctan(u * np.tan(latitude) / radius))
+
+
+def test_yarns_that_slip_altogether_lie_on_circles_of_latitude_of_a_sphere():
+    errors = []
+    for side in (8.0, 4.0):
+        ply = lay(sphere(100.0, 60.0), Recipe(slip=1.0), side)
+        points, shear = latitudes(ply, 100.0)
+        known = np.isfinite(ply.points[..., 0])
+        assert known.sum() > 250
+        off = np.linalg.norm(ply.points - points, axis=2)[known]
+        turned = (node_shear(ply.points) - shear)[np.isfinite(node_shear(ply.points))]
+        errors.append((np.sqrt(np.mean(off**2)), np.sqrt(np.mean(turned**2))))
+    (far, turn), (near, less) = errors
+    assert near < 0.3 * far and far < 0.03  # second order: a quarter
+    assert less < 0.35 * turn and turn < 0.02
+
+
+@pytest.mark.parametrize("part", ["dome", "saddle", "double-bump"])
+def test_nets_that_slip_agree_whatever_their_cells(part):
+    """Also where yarns nearly meet at an angle; what is too sharp for the cells is left out."""
+    tool = draw_tool(part, np.random.default_rng(3))
+    coarse, fine = (lay(tool, Recipe(start=(5.0, -6.0), angle=35.0, slip=0.86), side) for side in (8.0, 4.0))
+    shears = []
+    for ply, step in ((coarse, 2), (fine, 4)):
+        middle = len(ply.u) // 2
+        shears.append(node_shear(ply.points)[middle - 9 * step : middle + 9 * step + 1 : step][:, middle - 9 * step : middle + 9 * step + 1 : step])
+    change = shears[0] - shears[1]
+    assert np.isfinite(change).sum() > 150
+    assert np.nanmax(np.abs(change)) < 0.65
+    assert np.sqrt(np.nanmean(change**2)) < 0.12

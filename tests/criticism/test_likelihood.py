@@ -72,3 +72,25 @@ def test_correlation_lengths_go_from_the_spacing_to_a_good_part_of_the_patch():
     lengths = correlation_lengths(grid())
     assert 16.0 < lengths[0] < 24.0
     assert 35.0 < lengths[-1] <= 0.3 * 11 * 16.0 + 1e-9
+
+
+@pytest.mark.parametrize(("size", "length", "kind"), [(0.6, 29.0, Smoothness.ROUGH), (0.3, 30.0, Smoothness.SMOOTH)])
+def test_no_scatter_that_could_be_tried_is_much_likelier_than_the_one_found(judge, size, length, kind):
+    from geomdrap.criticism.likelihood import SIZES, largest_scatter
+
+    rng = np.random.default_rng(5)
+    covariance = size**2 * scatter_covariance(judge.at, CHANNELS, judge.mask, length, kind)
+    values, vectors = np.linalg.eigh(covariance)
+    made = vectors @ (np.sqrt(np.maximum(values, 0.0)) * rng.normal(size=len(values)))
+    model = Residuals(made + judge.noise * rng.normal(size=len(made)), np.zeros((len(made), 0)))
+    _, found = judge.best_scatter([model], [0])
+    every = [Scatter(s * judge.unit, x, k) for s in SIZES[1:] for x in judge.lengths for k in Smoothness]
+    allowed = [s for s in every if s.size <= largest_scatter(s.length)]
+    assert found[0] > max(judge.log_likelihood(s, [model])[0] for s in allowed) - 3.0
+
+
+@pytest.mark.parametrize("kind", Smoothness)
+def test_the_shear_of_a_scatter_is_that_of_its_covariance(judge, kind):
+    covariance = scatter_covariance(judge.at, CHANNELS, judge.mask, 35.0, kind)
+    own = np.sqrt(np.diag(covariance)[-1])  # the last value is a shear
+    assert Scatter(0.4, 35.0, kind).shear == pytest.approx(0.4 * own, rel=1e-9)

@@ -35,3 +35,17 @@ def test_points_without_shear_do_not_matter():
     measured = seen(np.clip(MODEL, -12.0, 12.0))
     measured[::5] = np.nan
     assert plateau(measured, MODEL, NOISE) is not None
+
+
+def test_a_plateau_that_few_marks_reach_is_found():
+    model = np.concatenate([np.random.default_rng(2).normal(0.0, 7.0, 280), np.linspace(29.0, 42.0, 14)])
+    found = plateau(seen(np.clip(model, -26.0, 26.0)), model, NOISE)
+    assert found is not None
+    assert found.angle == pytest.approx(26.0, abs=0.8)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_shear_that_is_only_scattered_has_no_plateau(seed):
+    scattered = MODEL + np.random.default_rng(seed).normal(0.0, 1.5, len(MODEL))
+    assert plateau(scattered, MODEL, 1.5) is None
+    assert plateau(scattered, MODEL, NOISE) is None

@@ -1,0 +1,116 @@
+"""Diagnosis of tables that hold less: shear alone, directions alone, positions alone; and of changes that matter not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import geomdrap as gd
+from geomdrap.blind import make
+
+CHEAP = ("yarn-extension", "weave-skew", "springback")
+
+
+def told_of(folder):
+    """Part, measurement, and the keywords of the set-up of a blind set."""
+    setup = gd.read_setup(folder / "setup.toml")
+    told = {name: getattr(setup, name) for name in ("origin", "angle", "sigma_xyz", "sigma_shear")}
+    return gd.read_surface(folder / "part.stl"), gd.read_measurement(folder / "measured.csv"), told
+
+
+def skewed(folder, columns="all"):
+    make(3, effect="weave-skew", part="saddle", points=120, scatter=0.0, outliers=0.0, columns=columns, folder=folder)
+    return told_of(folder)
+
+
+def row(diagnosis, name):
+    return next(t for t in diagnosis.tried if t.name == name)
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    surface, measurement, told = skewed(tmp_path_factory.mktemp("plain"))
+    return surface, measurement, told, gd.diagnose(surface, measurement, **told, effects=CHEAP)
+
+
+@pytest.mark.parametrize("columns", ["shear", "directions", "positions"])
+def test_a_skew_is_found_whatever_was_recorded(tmp_path, plain, columns):
+    surface, measurement, told = skewed(tmp_path, columns)
+    d = gd.diagnose(surface, measurement, **told, effects=CHEAP)
+    assert d.verdict == "weave-skew"
+    (part,), (all_,) = row(d, "weave-skew").values, row(plain[3], "weave-skew").values
+    assert abs(part.value - all_.value) < 4.0 * np.hypot(part.sigma, all_.sigma)
+    assert part.sigma > all_.sigma
+    # and what such a table cannot show is said
+    assert any("no u, v" in hint for hint in d.hints) == (columns != "positions")
+    assert any("no shear" in hint for hint in d.hints) == (columns != "shear")
+    if columns != "positions":
+        assert all(amount is None or amount > 0.01 for _, amount, _ in row(d, "yarn-extension").visible)
+
+
+def test_the_noise_of_directions_may_be_given_or_stand_in_the_table(tmp_path):
+    surface, measurement, told = skewed(tmp_path, "directions")
+    n = len(measurement)
+    told.pop("sigma_shear")
+    first = gd.diagnose(surface, measurement, **told, sigma_direction=0.5, effects=CHEAP)
+    column = replace(measurement, sigma_direction=np.full(n, 0.5))
+    second = gd.diagnose(surface, column, **told, effects=CHEAP)
+    third = gd.diagnose(surface, measurement, **told, sigma_direction=1.0, effects=CHEAP)
+    a, b, c = (row(d, "weave-skew").values[0] for d in (first, second, third))
+    assert (a.value, a.sigma) == pytest.approx((b.value, b.sigma), rel=1e-9)
+    assert c.sigma > 1.5 * a.sigma
+
+
+def assert_same(first, second, close):
+    """The same verdict, and values that differ by a small share of their standard deviations."""
+    assert first.verdict == second.verdict
+    for a, b in zip(row(first, "weave-skew").values, row(second, "weave-skew").values, strict=True):
+        assert abs(a.value - b.value) < close * a.sigma
+        assert b.sigma == pytest.approx(a.sigma, rel=close)
+
+
+def test_part_and_measurement_moved_together_give_the_same_diagnosis(plain):
+    surface, m, told, first = plain
+    turn, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))
+    turn *= np.sign(np.linalg.det(turn))
+    shift = np.array([300.0, -200.0, 150.0])
+    second = gd.diagnose(
+        gd.Surface(surface.points @ turn.T + shift, surface.triangles),
+        replace(m, points=m.points @ turn.T + shift),
+        **{**told, "origin": tuple(turn @ np.array(told["origin"]) + shift)},
+        reference=tuple(turn @ np.array([1.0, 0.0, 0.0])),
+        effects=CHEAP,
+    )
+    assert_same(first, second, 0.05)
+
+
+def test_the_numbering_of_the_mesh_makes_no_difference(plain):
+    surface, m, told, first = plain
+    rng = np.random.default_rng(2)
+    number = rng.permutation(len(surface.points))
+    points = np.empty_like(surface.points)
+    points[number] = surface.points
+    faces = number[surface.triangles][rng.permutation(len(surface.triangles))]
+    assert_same(first, gd.diagnose(gd.Surface(points, faces), m, **told, effects=CHEAP), 0.05)
+
+
+def test_a_table_in_inches_gives_the_same_diagnosis(plain, tmp_path):
+    surface, m, told, first = plain
+    table = np.column_stack([m.u / 25.4, m.v / 25.4, m.points / 25.4, m.shear])
+    path = tmp_path / "inches.csv"
+    np.savetxt(path, table, delimiter=",", header="u,v,x,y,z,shear", comments="", fmt="%.12f")
+    assert_same(first, gd.diagnose(surface, gd.read_measurement(path, unit="in"), **told, effects=CHEAP), 0.01)
+
+
+def test_an_effect_that_takes_long_is_looked_at_once_where_there_is_nothing_for_it(plain, monkeypatch):
+    from geomdrap.effects.shear_stiffness import ShearStiffness
+
+    surface, m, told, _ = plain
+    drapes = []
+    relaxing = ShearStiffness.on_fabric
+    monkeypatch.setattr(ShearStiffness, "on_fabric", lambda self, fabric: drapes.append(1) or relaxing(self, fabric))
+    d = gd.diagnose(surface, m, **told, effects=("weave-skew", "shear-stiffness"))
+    assert d.verdict == "weave-skew"
+    assert len(drapes) <= 3
