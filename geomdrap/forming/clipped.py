@@ -18,6 +18,8 @@ from geomdrap.forming.sheet import Sheet
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
+Box = tuple[float, float, float, float]
+"""Of a cell: u from, to, v from, to."""
 
 SNAP = 1e-6
 """Share of the pitch within which points are one."""
@@ -29,8 +31,9 @@ def strip(length: float, width: float, angle: float, pitch: float) -> Sheet:
     """A strip of ``width`` × ``length`` mm along x and y, the warp at ``angle`` degrees from its length.
 
     Warp runs at 90° − angle from +x, weft 90° further, so that pulling along y closes them: positive shear. The
-    middle of the strip is the origin; fabric coordinates are measured from its lower left corner. ``pitch`` mm is the
-    side of a cell. FormingError where the strip holds no whole cell.
+    middle of the strip is the origin; fabric coordinates are measured from its lower left corner. ``pitch`` mm is
+    about the side of a cell: a yarn of each family runs through every corner, since those that meet a clamp cannot
+    turn and the others can. FormingError where the strip holds no cell.
     """
     if not (min(length, width, pitch) > 0.0 and 0.0 <= angle <= 90.0):
         raise FormingError(
@@ -40,26 +43,35 @@ def strip(length: float, width: float, angle: float, pitch: float) -> Sheet:
     turn = math.radians(90.0 - angle)
     axes = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
     corners = np.array([[0.0, 0.0], [width, 0.0], [width, length], [0.0, length]]) @ axes.T
-    low, high = np.floor(corners.min(axis=0) / pitch - 1e-9), np.ceil(corners.max(axis=0) / pitch + 1e-9)
-    kept = [
-        (polygon, side)
-        for i, j in itertools.product(range(int(low[0]), int(high[0])), range(int(low[1]), int(high[1])))
-        if (polygon := _clipped(i, j, pitch, corners)) is not None
-        for side in [(i * pitch, j * pitch)]
-    ]
-    if not kept:
+    u, v = (_lines(corners[:, k], pitch) for k in (0, 1))
+    boxes = [(*a, *b) for a, b in itertools.product(itertools.pairwise(u), itertools.pairwise(v))]
+    clipped = [(_clipped(box, corners, SNAP * pitch), box) for box in boxes]
+    cells = [(polygon, box) for polygon, box in clipped if polygon is not None]
+    if not cells:
         raise FormingError(f"a pitch of {pitch:g} mm is too coarse for a strip of {length:g} × {width:g} mm")
-    sheet = _joined(kept, pitch)
+    sheet = _joined(cells, pitch)
     place = sheet.fabric @ axes - [0.5 * width, 0.5 * length]
     return sheet.moved(np.column_stack([place, np.zeros(len(place))]))
 
 
-def _clipped(i: int, j: int, pitch: float, corners: Array) -> list[Point] | None:
-    """The cell i, j within the convex polygon ``corners``, counter-clockwise; None where next to nothing is left."""
-    polygon = [((i + a) * pitch, (j + b) * pitch) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+def _lines(corners: Array, pitch: float) -> list[float]:
+    """Coordinates of the yarns of a family: through all ``corners`` (4,), and about ``pitch`` apart between them."""
+    through = [float(c) for c in np.sort(corners)]
+    lines = through[:1]
+    for end in through[1:]:
+        if end - lines[-1] > 0.05 * pitch:
+            count = max(1, round((end - lines[-1]) / pitch))
+            lines += np.linspace(lines[-1], end, count + 1)[1:].tolist()
+    return lines
+
+
+def _clipped(box: Box, corners: Array, tolerance: float) -> list[Point] | None:
+    """The cell ``box`` within the convex polygon ``corners``; None where next to nothing is left."""
+    u0, u1, v0, v1 = box
+    polygon = [(u0, v0), (u1, v0), (u1, v1), (u0, v1)]
     for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        polygon = _cut(polygon, a, (b - a) / np.linalg.norm(b - a), SNAP * pitch)
-    return polygon if len(polygon) > 2 and _area(polygon) > SLIVER * pitch * pitch else None
+        polygon = _cut(polygon, a, (b - a) / np.linalg.norm(b - a), tolerance)
+    return polygon if len(polygon) > 2 and _area(polygon) > SLIVER * (u1 - u0) * (v1 - v0) else None
 
 
 def _cut(polygon: list[Point], start: Array, along: Array, tolerance: float) -> list[Point]:
@@ -82,17 +94,17 @@ def _area(polygon: list[Point]) -> float:
     return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
-def _joined(cells: list[tuple[list[Point], Point]], pitch: float) -> Sheet:
-    """The sheet of clipped cells, each with its lower corner; points that coincide are one node."""
+def _joined(cells: list[tuple[list[Point], Box]], pitch: float) -> Sheet:
+    """The sheet of clipped cells, each with its box; points that coincide are one node."""
     numbers: dict[tuple[int, int], int] = {}
     fabric: list[Point] = []
     triangles: list[tuple[int, int, int]] = []
     pieces: list[tuple[int, int, int, float]] = []
-    for polygon, corner in cells:
+    for polygon, box in cells:
         nodes = [_node(p, numbers, fabric, SNAP * pitch) for p in polygon]
         nodes = [n for n, before in zip(nodes, [nodes[-1], *nodes[:-1]], strict=True) if n != before]
-        triangles += _fan(nodes, fabric, round(sum(corner) / pitch))
-        pieces += _pieces(nodes, fabric, corner, pitch)
+        triangles += _fan(nodes, fabric, round(box[0] / (box[1] - box[0])) + round(box[2] / (box[3] - box[2])))
+        pieces += _pieces(nodes, fabric, box, SNAP * pitch)
     flat, ends = np.array(fabric), np.array(pieces)
     return Sheet(
         fabric=flat,
@@ -133,17 +145,20 @@ def _fan(nodes: list[int], fabric: list[Point], turn: int) -> list[tuple[int, in
     return able[turn % len(able)]
 
 
-def _pieces(nodes: list[int], fabric: list[Point], corner: Point, pitch: float) -> list[tuple[int, int, int, float]]:
+def _pieces(nodes: list[int], fabric: list[Point], box: Box, tolerance: float) -> list[tuple[int, int, int, float]]:
     """Pieces of yarn on the sides of a cell: ends, family, and the width that shares out the yarn of what is left."""
     found: list[list[tuple[int, int]]] = [[], []]
     for p, q in zip(nodes, nodes[1:] + nodes[:1], strict=True):
         for family in (0, 1):
             off = 1 - family  # warp runs along u: its v is that of a side of the cell
-            level = {round((fabric[n][off] - corner[off]) / pitch / (4.0 * SNAP)) for n in (p, q)}
-            if len(level) == 1 and level <= {0, round(0.25 / SNAP)}:
+            if any(
+                all(abs(fabric[n][off] - side) < 4.0 * tolerance for n in (p, q))
+                for side in box[2 * off : 2 * off + 2]
+            ):
                 found[family].append((p, q))
     area, pieces = _area([fabric[n] for n in nodes]), []
     for family, sides in enumerate(found):
         total = sum(math.dist(fabric[p], fabric[q]) for p, q in sides)
-        pieces += [(p, q, family, area / total) for p, q in sides if total > SLIVER * pitch]
+        shortest = SLIVER * (box[1] - box[0] if family == 0 else box[3] - box[2])
+        pieces += [(p, q, family, area / total) for p, q in sides if total > shortest]
     return pieces

@@ -49,7 +49,9 @@ class NumpyStep:
         j = np.sqrt(c11 * c22 - c12**2)
         with np.errstate(invalid="ignore", divide="ignore"):
             factor = np.where(radius > 1e-9, np.arctanh(radius / mean) / (2 * radius), 0.5 / mean)
-        h = np.stack([0.5 * np.log(j) + factor * (c11 - mean), 0.5 * np.log(j) + factor * (c22 - mean), factor * c12], 1)
+        h = np.stack(
+            [0.5 * np.log(j) + factor * (c11 - mean), 0.5 * np.log(j) + factor * (c22 - mean), factor * c12], 1
+        )
         elastic = h @ self.law.T
         change, self.old = elastic - self.old, elastic
         self.terms = self.keep[:, None, None] * self.terms + self.take[:, None, None] * change
