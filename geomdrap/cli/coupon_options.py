@@ -68,6 +68,7 @@ def cloth_options(function: F) -> F:
 def run_options(function: F) -> F:
     """Add the numbers of the run."""
     for option in (
+        click.option("--keep-mass", is_flag=True, help="Scale no masses; steps over the stable limit are refused."),
         click.option(
             "--frames", type=click.IntRange(min=1), default=50, show_default=True, help="How many readings."
         ),

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from geomdrap.criticism.curve import Array, CurveEffect, Parameter, effects_on
+from geomdrap.errors import FormingError
 from geomdrap.forming import Cloth
 from geomdrap.forming.coupon import bias_extension
 
@@ -50,6 +51,8 @@ def mechanical_effects(
             weft=replace(cloth.weft, modulus=factor * cloth.weft.modulus, undulation=undulation),
         )
         pulled = bias_extension(changed, furthest, length, width, cells=cells, **settings).result
+        if pulled.stopped:
+            raise FormingError(f"the model cannot stand for the curve: {pulled.stopped}")
         done += 1
         if progress:
             progress(done / total)

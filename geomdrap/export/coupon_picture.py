@@ -75,6 +75,8 @@ def _curves(force: Any, shear: Any, coupons: Sequence[Coupon]) -> None:
         for name, side in axes.spines.items():
             side.set_visible(name in ("left", "bottom"))
     force.set_ylim(bottom=0.0, top=_top(coupons))
+    if max(float(np.nanmax(np.abs(c.result.shear))) for c in coupons) < 1.0:
+        shear.set_ylim(-1.0, 1.0)  # rounding must not look like shear
     if force.get_legend_handles_labels()[0]:
         force.legend(frameon=False, fontsize=8.5)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from geomdrap.forming.biaxial import JERSEY, biaxial_specimen
@@ -24,17 +24,11 @@ FEWEST, MOST = 10_000, 400_000
 
 @dataclass(frozen=True, eq=False)
 class Coupon:
-    """A test that was made: its name, its ``settings`` by name (numbers in mm, mm/min, degrees), and what it gave."""
+    """A test that was made: its name, its ``settings`` by name (mm, mm/min, degrees), and its ``result``."""
 
     test: str
-    settings: dict[str, Any] = field(default_factory=dict)
-    pulled: Pulled | None = None
-
-    @property
-    def result(self) -> Pulled:
-        """What the test gave."""
-        assert self.pulled is not None
-        return self.pulled
+    settings: dict[str, Any]
+    result: Pulled
 
 
 def uniaxial(
@@ -47,6 +41,7 @@ def uniaxial(
     cells: int = 20,
     steps: int | None = None,
     frames: int = 50,
+    keep_mass: bool = False,
     progress: Progress = None,
 ) -> Coupon:
     """Pull a strip whose warp lies ``angle`` deg from its length; see `strip_specimen` and `pull`.
@@ -58,7 +53,7 @@ def uniaxial(
     if displacement is None:
         displacement = kinematic_lock(length, width, min(angle, 90.0 - angle)) + BEYOND_LOCK
     taken = steps or enough_steps(specimen)
-    pulled = pull(specimen, displacement, speed, taken, frames, progress)
+    pulled = pull(specimen, displacement, speed, taken, frames, progress, scale_mass=not keep_mass)
     settings = {"angle": angle, "speed": speed, "length": length, "width": width, "displacement": displacement}
     return Coupon("uniaxial", {**settings, "steps": taken}, pulled)
 
@@ -68,7 +63,7 @@ def bias_extension(
 ) -> Coupon:
     """Pull a strip cut at 45°; the rest as for `uniaxial`."""
     made = uniaxial(cloth, 45.0, displacement=displacement, length=length, width=width, **more)
-    return Coupon("bias-extension", {k: v for k, v in made.settings.items() if k != "angle"}, made.pulled)
+    return Coupon("bias-extension", {k: v for k, v in made.settings.items() if k != "angle"}, made.result)
 
 
 def picture_frame(
@@ -92,12 +87,13 @@ def biaxial(
     cells: int = 20,
     steps: int | None = None,
     frames: int = 50,
+    keep_mass: bool = False,
     progress: Progress = None,
 ) -> Coupon:
     """Pull a square along warp and weft at once; see `biaxial_specimen` and `pull`."""
     specimen = biaxial_specimen(cloth, cells=cells, ratio=ratio)
     taken = steps or enough_steps(specimen)
-    pulled = pull(specimen, displacement, speed, taken, frames, progress)
+    pulled = pull(specimen, displacement, speed, taken, frames, progress, scale_mass=not keep_mass)
     settings = {"displacement": displacement, "speed": speed, "ratio": ratio, "steps": taken}
     return Coupon("biaxial", settings, pulled)
 

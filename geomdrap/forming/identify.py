@@ -21,6 +21,8 @@ Simulate = Callable[[dict[str, float]], Curves]
 
 STEP = 2e-3
 """Change of the logarithm of a parameter from which slopes are taken: well above the noise of an explicit run."""
+MIDDLE = 10.0
+"""Where the logarithm of a parameter over its start is counted from: the solver's steps are shares of it."""
 CONFOUNDED = 0.95
 """Correlation from which two parameters are not told apart, if one of them is not known well by itself."""
 KNOWN = 0.05
@@ -91,22 +93,26 @@ def identify(
     from scipy.optimize import least_squares
 
     names, scale = tuple(start), scales(measured)
+    begin = np.array(list(start.values()))
     used = {c: np.isfinite(measured[c]) for c in measured}
     if sum(int(u.sum()) for u in used.values()) <= len(names):
         raise FormingError(f"there are too few readings for {len(names)} parameters; fit fewer, or measure more")
     runs = 0
 
-    def residuals(logarithms: Array) -> Array:
+    def values_at(place: Array) -> Array:
+        return np.asarray(begin * np.exp(place - MIDDLE))
+
+    def residuals(place: Array) -> Array:
         nonlocal runs
         runs += 1
         if progress:
             progress(runs)
-        curves = simulate(dict(zip(names, np.exp(logarithms).tolist(), strict=True)))
+        curves = simulate(dict(zip(names, values_at(place).tolist(), strict=True)))
         out = np.concatenate([((curves[c] - measured[c]) / scale[c])[used[c]] for c in measured])
         return np.where(np.isfinite(out), out, 1e3)  # a run that ended early is far off
 
-    first = np.log(np.array(list(start.values())))
-    found = least_squares(residuals, first, method="lm", diff_step=_steps(first), xtol=1e-6, ftol=1e-8)
+    first = np.full(len(names), MIDDLE)
+    found = least_squares(residuals, first, method="lm", diff_step=0.0 * first + STEP / MIDDLE, xtol=1e-7, ftol=1e-8)
     counts = [int(used[c].sum()) for c in measured]
     parts = dict(zip(measured, np.split(found.fun, np.cumsum(counts)[:-1]), strict=True))
     rms = {c: float(np.sqrt(np.mean((part * scale[c][used[c]]) ** 2))) for c, part in parts.items()}
@@ -115,13 +121,8 @@ def identify(
     weights = np.concatenate([np.full(len(part), 1.0 / scatter[c]) for c, part in parts.items()])
     slopes = found.jac * weights[:, None]
     sigma, correlation = spread_of(slopes)
-    values = np.exp(found.x)
+    values = values_at(found.x)
     return Identified(names, values, values * sigma, correlation, slopes, scatter, rms, runs, bool(found.success))
-
-
-def _steps(logarithms: Array) -> Array:
-    """Relative steps of the solver that make absolute ones of ``STEP``: its step is relative to the logarithm."""
-    return STEP / np.maximum(np.abs(logarithms), 1e-3)
 
 
 def scales(readings: Curves) -> dict[str, Array]:

@@ -84,10 +84,12 @@ def pull(
     progress: Callable[[float], None] | None = None,
     damping: float = DAMPING,
     safety: float = SAFETY,
+    scale_mass: bool = True,
 ) -> Pulled:
     """Pull ``specimen`` by ``displacement`` mm at ``speed`` mm/min in ``steps`` steps, and read it ``frames`` times.
 
-    Masses are scaled so that the steps are stable. FormingError where a number is out of range.
+    Masses are scaled so that the steps are stable, unless ``scale_mass`` is false. FormingError where a number is out
+    of range.
     """
     if not (displacement > 0.0 and speed > 0.0 and np.isfinite(displacement) and np.isfinite(speed)):
         raise FormingError(f"displacement and speed must be above 0; got {displacement:g} mm and {speed:g} mm/min")
@@ -97,7 +99,9 @@ def pull(
     half = max(1, round(0.5 * steps / frames))
     duration = displacement / pace
     step = duration / (2 * half * frames)
-    model = make_model(specimen.sheet, specimen.cloth, step, specimen.held, damping / duration, safety=safety)
+    model = make_model(
+        specimen.sheet, specimen.cloth, step, specimen.held, damping / duration, scale_mass, safety
+    )
     rest, way = model.sheet.points[model.driven], specimen.flow[model.driven]
 
     def path(time: float) -> Array:

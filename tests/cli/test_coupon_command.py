@@ -96,6 +96,7 @@ def test_a_test_that_diverges_keeps_what_it_had_and_ends_with_1(
         (("--speed", "0"), "displacement and speed must be above 0; got 30 mm and 0 mm/min"),
         (("--steps", "10"), "10 steps are too few for 50 frames; take at least 200"),
         (("--cells", "1"), "at least 2 cells across"),
+        (("--keep-mass",), "over the stable limit of "),
         (("--thickness", "0"), "the thickness of the cloth must be above 0 mm"),
         (("--displacement", "nan"), "not a finite number"),
         (("--relaxation", "fast"), "is not one of"),
