@@ -68,10 +68,8 @@ class Pulled:
         """What the user should look at."""
         said = [self.stopped] if self.stopped else []
         if self.kinetic_share > SLOW:
-            said.append(
-                f"{100 * self.kinetic_share:.1f} % of the energy is kinetic, so that inertia shows in the forces; "
-                "take more steps"
-            )
+            share = f"{100 * self.kinetic_share:.1f} %" if self.kinetic_share < 1.0 else "more than half"
+            said.append(f"{share} of the energy is kinetic, so that inertia shows in the forces; take more steps")
         return said
 
 
