@@ -1,14 +1,16 @@
 """Specimens cut from the cloth at an angle: cells along the yarns, clipped by the rectangle of the specimen.
 
 Sides of cells stay on yarns, since triangles across the yarns would lock in shear (X. Yu et al., Composites A 37
-(2006) 790). What the cut leaves of a cell keeps its share of the yarns of both families, in the pieces that are left
-of its sides.
+(2006) 790). Clamps cut cells, and hold the nodes on the cut. A free border that runs through a cell leaves it whole,
+with the share of resin and yarn that lies within: a corner cut off would be free to turn its yarns by itself, which
+yarns that cross many others are not. Nodes of such cells lie a little outside of the border.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,8 +47,7 @@ def strip(length: float, width: float, angle: float, pitch: float) -> Sheet:
     corners = np.array([[0.0, 0.0], [width, 0.0], [width, length], [0.0, length]]) @ axes.T
     u, v = (_lines(corners[:, k], pitch) for k in (0, 1))
     boxes = [(*a, *b) for a, b in itertools.product(itertools.pairwise(u), itertools.pairwise(v))]
-    clipped = [(_clipped(box, corners, SNAP * pitch), box) for box in boxes]
-    cells = [(polygon, box) for polygon, box in clipped if polygon is not None]
+    cells = [cell for box in boxes if (cell := _cell(box, corners, SNAP * pitch)) is not None]
     if not cells:
         raise FormingError(f"a pitch of {pitch:g} mm is too coarse for a strip of {length:g} × {width:g} mm")
     sheet = _joined(cells, pitch)
@@ -65,13 +66,34 @@ def _lines(corners: Array, pitch: float) -> list[float]:
     return lines
 
 
-def _clipped(box: Box, corners: Array, tolerance: float) -> list[Point] | None:
-    """The cell ``box`` within the convex polygon ``corners``; None where next to nothing is left."""
+@dataclass(frozen=True)
+class _Cell:
+    """What is meshed of the cell ``box``: a polygon, and the share of it that is cloth."""
+
+    box: Box
+    polygon: list[Point]
+    weight: float
+
+
+def _cell(box: Box, corners: Array, tolerance: float) -> _Cell | None:
+    """The cell ``box`` of the strip with ``corners`` (4, 2); None where next to nothing of it is cloth."""
     u0, u1, v0, v1 = box
-    polygon = [(u0, v0), (u1, v0), (u1, v1), (u0, v1)]
-    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+    whole = [(u0, v0), (u1, v0), (u1, v1), (u0, v1)]
+    cloth = _within(whole, corners, (0, 1, 2, 3), tolerance)
+    if len(cloth) < 3 or _area(cloth) <= SLIVER * (u1 - u0) * (v1 - v0):
+        return None
+    if all(min(math.dist(p, q) for q in whole) < 4.0 * tolerance for p in cloth):
+        return _Cell(box, cloth, 1.0)  # the border runs along sides or through opposite corners
+    held = _within(whole, corners, (0, 2), tolerance)
+    return _Cell(box, held, _area(cloth) / _area(held))
+
+
+def _within(polygon: list[Point], corners: Array, sides: tuple[int, ...], tolerance: float) -> list[Point]:
+    """What of a convex polygon lies within the given sides of the strip: 0 and 2 are clamps, 1 and 3 free."""
+    for side in sides:
+        a, b = corners[side], corners[(side + 1) % 4]
         polygon = _cut(polygon, a, (b - a) / np.linalg.norm(b - a), tolerance)
-    return polygon if len(polygon) > 2 and _area(polygon) > SLIVER * (u1 - u0) * (v1 - v0) else None
+    return polygon
 
 
 def _cut(polygon: list[Point], start: Array, along: Array, tolerance: float) -> list[Point]:
@@ -94,23 +116,25 @@ def _area(polygon: list[Point]) -> float:
     return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
-def _joined(cells: list[tuple[list[Point], Box]], pitch: float) -> Sheet:
-    """The sheet of clipped cells, each with its box; points that coincide are one node."""
+def _joined(cells: list[_Cell], pitch: float) -> Sheet:
+    """The sheet of the cells; points that coincide are one node."""
     numbers: dict[tuple[int, int], int] = {}
     fabric: list[Point] = []
     triangles: list[tuple[int, int, int]] = []
     pieces: list[tuple[int, int, int, float]] = []
-    for polygon, box in cells:
-        nodes = [_node(p, numbers, fabric, SNAP * pitch) for p in polygon]
+    weights: list[float] = []
+    for cell in cells:
+        box, nodes = cell.box, [_node(p, numbers, fabric, SNAP * pitch) for p in cell.polygon]
         nodes = [n for n, before in zip(nodes, [nodes[-1], *nodes[:-1]], strict=True) if n != before]
         triangles += _fan(nodes, fabric, round(box[0] / (box[1] - box[0])) + round(box[2] / (box[3] - box[2])))
-        pieces += _pieces(nodes, fabric, box, SNAP * pitch)
+        weights += [cell.weight] * (len(triangles) - len(weights))
+        pieces += _pieces(nodes, fabric, cell, SNAP * pitch)
     flat, ends = np.array(fabric), np.array(pieces)
     return Sheet(
         fabric=flat,
         points=np.column_stack([flat, np.zeros(len(flat))]),
         triangles=np.array(triangles, dtype=np.int64),
-        weight=np.ones(len(triangles)),
+        weight=np.array(weights),
         pieces=ends[:, :2].astype(np.int64),
         family=ends[:, 2].astype(np.int64),
         width=ends[:, 3],
@@ -145,8 +169,11 @@ def _fan(nodes: list[int], fabric: list[Point], turn: int) -> list[tuple[int, in
     return able[turn % len(able)]
 
 
-def _pieces(nodes: list[int], fabric: list[Point], box: Box, tolerance: float) -> list[tuple[int, int, int, float]]:
-    """Pieces of yarn on the sides of a cell: ends, family, and the width that shares out the yarn of what is left."""
+def _pieces(
+    nodes: list[int], fabric: list[Point], cell: _Cell, tolerance: float
+) -> list[tuple[int, int, int, float]]:
+    """Pieces of yarn on the sides of a cell: ends, family, and the width that shares out the yarn of its cloth."""
+    box = cell.box
     found: list[list[tuple[int, int]]] = [[], []]
     for p, q in zip(nodes, nodes[1:] + nodes[:1], strict=True):
         for family in (0, 1):
@@ -156,7 +183,7 @@ def _pieces(nodes: list[int], fabric: list[Point], box: Box, tolerance: float) -
                 for side in box[2 * off : 2 * off + 2]
             ):
                 found[family].append((p, q))
-    area, pieces = _area([fabric[n] for n in nodes]), []
+    area, pieces = cell.weight * _area([fabric[n] for n in nodes]), []
     for family, sides in enumerate(found):
         total = sum(math.dist(fabric[p], fabric[q]) for p, q in sides)
         shortest = SLIVER * (box[1] - box[0] if family == 0 else box[3] - box[2])

@@ -88,18 +88,20 @@ def test_bias_extension_has_force_and_shear_of_the_inextensible_net() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("angle", "cells", "rows"),
-    [(15.0, 10, ((1.0, 363.0), (2.0, 798.8))), (30.0, 7, ((5.0, 232.9), (10.0, 553.2)))],
+    [
+        (15.0, 5, ((1.0, 363.0), (2.0, 798.8), (4.0, 2286.7))),
+        (30.0, 8, ((5.0, 232.9), (10.0, 553.2), (20.0, 1982.3), (30.0, 9173.1))),
+        (45.0, 8, ((10.0, 350.6), (20.0, 1017.9))),
+    ],
 )
-def test_off_axis_forces_tend_to_those_of_the_inextensible_net(angle: float, cells: int, rows: tuple) -> None:
-    """T7. Beside the clamps the strip is of first order in the pitch: two meshes are carried on to none."""
-    coarse, fine = (
-        uniaxial(NEARLY_INEXTENSIBLE, angle, 20.0, rows[-1][0], cells=n, steps=12_000 * n // 2, frames=10).result
-        for n in (cells, 2 * cells)
-    )
+def test_off_axis_forces_are_those_of_the_inextensible_net(angle: float, cells: int, rows: tuple) -> None:
+    """T7, with yarns fifty times stiffer than aramid: 1.5 %. Nearer to the lock even they stretch by as much."""
+    yarn = Fibre(modulus=6.5e6, undulation=0.0)
+    cloth, furthest = Cloth(yarn, yarn, Resin(relaxation=ELASTIC)), rows[-1][0]
+    frames = 10 * round(furthest / rows[0][0])  # forces are means over a frame: short ones
+    result = uniaxial(cloth, angle, 20.0, furthest, cells=cells, frames=frames).result
     for displacement, force in rows:
-        (f, _), (g, _) = _shown(coarse, displacement), _shown(fine, displacement)
-        assert abs(g / force - 1.0) < abs(f / force - 1.0)
-        assert 2.0 * g - f == pytest.approx(force, rel=0.03)
+        assert _shown(result, displacement)[0] == pytest.approx(force, rel=0.015)
 
 
 @pytest.mark.slow
