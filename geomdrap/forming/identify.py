@@ -23,6 +23,8 @@ STEP = 2e-3
 """Change of the logarithm of a parameter from which slopes are taken: well above the noise of an explicit run."""
 MIDDLE = 10.0
 """Where the logarithm of a parameter over its start is counted from: the solver's steps are shares of it."""
+MOST_RUNS = 40
+"""Simulations per parameter after which a fit gives up, and says so."""
 CONFOUNDED = 0.95
 """Correlation from which two parameters are not told apart, if one of them is not known well by itself."""
 KNOWN = 0.05
@@ -112,7 +114,15 @@ def identify(
         return np.where(np.isfinite(out), out, 1e3)  # a run that ended early is far off
 
     first = np.full(len(names), MIDDLE)
-    found = least_squares(residuals, first, method="lm", diff_step=0.0 * first + STEP / MIDDLE, xtol=1e-7, ftol=1e-8)
+    found = least_squares(
+        residuals,
+        first,
+        method="lm",
+        diff_step=0.0 * first + STEP / MIDDLE,
+        xtol=1e-5,
+        ftol=1e-6,
+        max_nfev=MOST_RUNS * len(names),
+    )
     counts = [int(used[c].sum()) for c in measured]
     parts = dict(zip(measured, np.split(found.fun, np.cumsum(counts)[:-1]), strict=True))
     rms = {c: float(np.sqrt(np.mean((part * scale[c][used[c]]) ** 2))) for c, part in parts.items()}
