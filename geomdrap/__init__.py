@@ -14,6 +14,7 @@ __version__ = "0.1.0"
 _HOMES = {
     "DrapeError": "errors",
     "EffectError": "errors",
+    "FormingError": "errors",
     "GeomdrapError": "errors",
     "MeasurementError": "errors",
     "SurfaceError": "errors",
@@ -36,13 +37,14 @@ _HOMES = {
     "evaluate": "fields",
 }
 
-_PACKAGES = ("effects", "sweep")
+_PACKAGES = ("effects", "forming", "sweep")
 
 __all__ = [
     "DrapeError",
     "Effect",
     "EffectError",
     "Fabric",
+    "FormingError",
     "GeomdrapError",
     "Measurement",
     "MeasurementError",
@@ -57,6 +59,7 @@ __all__ = [
     "drape",
     "effects",
     "evaluate",
+    "forming",
     "improve",
     "read_measurement",
     "read_setup",

@@ -18,7 +18,10 @@ except SystemExit as end:
     assert not end.code, end.code
 print("loaded:", [name for name in {heavy} if name in sys.modules])
 """
-COMMANDS = ("drape", "sweep", "optimize", "compare", "diagnose", "improve", "blind", "effects", "check", "diff", "sample")
+COMMANDS = (
+    *("drape", "sweep", "optimize", "compare", "diagnose", "improve", "blind", "effects", "coupon"),
+    *("check", "diff", "sample"),
+)
 ALL = [["--help"], ["--version"], *([name, "--help"] for name in COMMANDS)]
 
 

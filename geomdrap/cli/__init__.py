@@ -17,6 +17,7 @@ COMMANDS = {
     "check": "Say whether a mesh is fit for draping, and what is wrong with it.",
     "diff": "Say what changed between two results (for golden files in CI).",
     "effects": "List the physical effects that can be added to a drape, or explain one.",
+    "coupon": "Pull a test specimen of the mechanical model, or fit the model to a measured test.",
     "blind": "Test the diagnosis on sets with a hidden effect.",
     "sample": "Write a sample part.",
 }

@@ -94,24 +94,24 @@ class Progress:
             self._drawn = False
 
 
-def announce_compilation(quiet: bool) -> None:
-    """Say once, before the first run on a machine, why it takes longer."""
-    if not quiet and not kernels_are_compiled():
+def announce_compilation(quiet: bool, package: str = "fishnet") -> None:
+    """Say once, before the first run on a machine, why it takes longer; ``package`` holds the kernels used."""
+    if not quiet and not kernels_are_compiled(package):
         click.echo("Note: compiling the kernels for this machine, which takes a minute, once", err=True)
 
 
-def kernels_are_compiled() -> bool:
-    """Tell whether numba's cache holds the kernels of the net for this Python; needs no numba itself."""
+def kernels_are_compiled(package: str = "fishnet") -> bool:
+    """Tell whether numba's cache holds the kernels of ``package`` for this Python; needs no numba itself."""
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return True
     pattern = f"*.py{sys.version_info.major}{sys.version_info.minor}.nbi"
-    return any(any(folder.glob(pattern)) for folder in _cache_folders())
+    return any(any(folder.glob(pattern)) for folder in _cache_folders(package))
 
 
-def _cache_folders() -> list[Path]:
-    """Give the folders where numba keeps what it compiled of the net: the one chosen, or its own two."""
+def _cache_folders(package: str) -> list[Path]:
+    """Give the folders where numba keeps what it compiled of ``package``: the one chosen, or its own two."""
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     if chosen:
-        return list(Path(chosen).glob("fishnet_*"))
+        return list(Path(chosen).glob(f"{package}_*"))
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "numba"
-    return [Path(__file__).parent.parent / "fishnet" / "__pycache__", *user.glob("fishnet_*")]
+    return [Path(__file__).parent.parent / package / "__pycache__", *user.glob(f"{package}_*")]

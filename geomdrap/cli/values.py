@@ -145,6 +145,42 @@ class Mapping(click.ParamType):
         return out
 
 
+class Numbers(click.ParamType):
+    """One finite number or more, with commas between."""
+
+    name = "x,x,..."
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, ...]:
+        """Give the numbers, or fail with a sentence."""
+        if isinstance(value, tuple):
+            return value
+        numbers = [_number(part) for part in str(value).split(",")]
+        found = tuple(n for n in numbers if n is not None and math.isfinite(n))
+        if len(found) < len(numbers):
+            self.fail(f"'{value}' is not a finite number, or several with commas, as in 10,30,45", param, ctx)
+        return found
+
+
+class Pairs(click.ParamType):
+    """Pairs of numbers: ``0.1=0.2,10=0.3``."""
+
+    name = "x=y,..."
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[tuple[float, float], ...]:
+        """Give the pairs, or fail with a sentence."""
+        if isinstance(value, tuple):
+            return value
+        pairs = [[_number(side) for side in part.split("=")] for part in str(value).split(",")]
+        found = tuple((p[0], p[1]) for p in pairs if len(p) == 2 and p[0] is not None and p[1] is not None)
+        if len(found) < len(pairs):
+            self.fail(f"'{value}' is not pairs of numbers, as in 0.1=0.2,10=0.3", param, ctx)
+        return found
+
+
 class Size(click.ParamType):
     """The blank: width times height, as in ``400x300``."""
 

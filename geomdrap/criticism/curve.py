@@ -103,59 +103,91 @@ _SLACK = Parameter("slack", "mm", (5.0,), 0.0, 8.0)
 _SHARE = Parameter("share", "", (0.1,), 0.0, 0.3)
 _ONSETS = (10.0, 30.0, 50.0)
 
+Base = Callable[[Array], Array]
+"""Displacement (n,) mm -> shear (n,) deg, by the theory alone."""
 
-def _saturation(d: Array, p: Array, length: float) -> Array:
-    shear = pin_jointed(d, length)
+
+@dataclass(frozen=True)
+class Idea:
+    """One thing that a theory of the curve may lack: how it ``bends`` the curve of the theory."""
+
+    name: str
+    summary: str
+    bends: Callable[[Base, Array, Array, float], Array]
+    parameters: tuple[Parameter, ...]
+    single: bool = True
+
+
+def _saturated(base: Base, d: Array, p: Array, length: float) -> Array:
+    shear = base(d)
     return shear - p[0] * np.maximum(shear - p[1], 0.0)
 
 
-EFFECTS = {
-    effect.name: effect
-    for effect in (
-        CurveEffect("pin-jointed", "nothing is missing", lambda d, p, length: pin_jointed(d, length)),
-        CurveEffect(
-            "pre-shear",
-            "the cloth was sheared before the test",
-            lambda d, p, length: pin_jointed(d, length) + p[0],
-            (Parameter("shear", "deg", (-1.0,), -3.0, 3.0),),
-        ),
-        CurveEffect(
-            "clamp slack",
-            "the clamps move before the cloth does",
-            lambda d, p, length: pin_jointed(d - p[0], length),
-            (_SLACK,),
-        ),
-        CurveEffect(
-            "constant extension",
-            "yarns are longer than thought, by straightened crimp",
-            lambda d, p, length: pin_jointed(d, length, p[0]),
-            (Parameter("strain", "", (0.01,), 0.0, 0.02),),
-        ),
-        CurveEffect(
-            "saturation",
-            "beyond an onset a share of the shear is resisted (locking)",
-            _saturation,
-            (Parameter("share", "", (0.1, 0.4), 0.0, 1.0), Parameter("onset", "deg", (5.0, 25.0), -2.0, 60.0)),
-        ),
-        CurveEffect(
-            "growing extension",
-            "yarns stretch in proportion to the displacement",
-            lambda d, p, length: pin_jointed(d, length, p[0] * d / 100.0),
-            (Parameter("strain per 100 mm", "", (0.01,), 0.0, 0.02),),
-        ),
-        CurveEffect(
-            "slip",
-            "a share of the displacement is slip at the crossings",
-            lambda d, p, length: pin_jointed(d * (1.0 - p[0]), length),
-            (_SHARE,),
-        ),
-        CurveEffect(
-            "slack + slip from an onset",
-            "the clamps slack, and slip sets in at a displacement",
-            lambda d, p, length: pin_jointed(d - p[0] - p[1] * np.maximum(d - p[2], 0.0), length),
-            (_SLACK, _SHARE, Parameter("onset", "mm", _ONSETS, 0.0, 120.0)),
-            single=False,
-        ),
-    )
-}
-"""The effects for a curve, by name; the first is the theory itself."""
+def _stretched(displacement: Array, length: float, strain: Array | float) -> Array:
+    """The displacement at which unstretched yarns shear as much as those longer by ``strain`` do."""
+    return np.asarray((length + displacement) / (1.0 + np.asarray(strain)) - length)
+
+
+IDEAS = (
+    Idea(
+        "pre-shear",
+        "the cloth was sheared before the test",
+        lambda base, d, p, length: base(d) + p[0],
+        (Parameter("shear", "deg", (-1.0,), -3.0, 3.0),),
+    ),
+    Idea(
+        "clamp slack",
+        "the clamps move before the cloth does",
+        lambda base, d, p, length: base(d - p[0]),
+        (_SLACK,),
+    ),
+    Idea(
+        "constant extension",
+        "yarns are longer than thought, by straightened crimp",
+        lambda base, d, p, length: base(_stretched(d, length, p[0])),
+        (Parameter("strain", "", (0.01,), 0.0, 0.02),),
+    ),
+    Idea(
+        "saturation",
+        "beyond an onset a share of the shear is resisted (locking)",
+        _saturated,
+        (Parameter("share", "", (0.1, 0.4), 0.0, 1.0), Parameter("onset", "deg", (5.0, 25.0), -2.0, 60.0)),
+    ),
+    Idea(
+        "growing extension",
+        "yarns stretch in proportion to the displacement",
+        lambda base, d, p, length: base(_stretched(d, length, p[0] * d / 100.0)),
+        (Parameter("strain per 100 mm", "", (0.01,), 0.0, 0.02),),
+    ),
+    Idea(
+        "slip",
+        "a share of the displacement is slip at the crossings",
+        lambda base, d, p, length: base(d * (1.0 - p[0])),
+        (_SHARE,),
+    ),
+    Idea(
+        "slack + slip from an onset",
+        "the clamps slack, and slip sets in at a displacement",
+        lambda base, d, p, length: base(d - p[0] - p[1] * np.maximum(d - p[2], 0.0)),
+        (_SLACK, _SHARE, Parameter("onset", "mm", _ONSETS, 0.0, 120.0)),
+        single=False,
+    ),
+)
+
+
+def effects_on(theory: CurveEffect) -> dict[str, CurveEffect]:
+    """``theory`` alone, and with each of the ideas on top; parameters of the idea come before those of the theory."""
+    return {theory.name: theory, **{idea.name: _on(theory, idea) for idea in IDEAS}}
+
+
+def _on(theory: CurveEffect, idea: Idea) -> CurveEffect:
+    own = len(idea.parameters)
+
+    def model(d: Array, p: Array, length: float) -> Array:
+        return idea.bends(lambda moved: theory.model(moved, p[own:], length), d, p[:own], length)
+
+    return CurveEffect(idea.name, idea.summary, model, (*idea.parameters, *theory.parameters), idea.single)
+
+
+EFFECTS = effects_on(CurveEffect("pin-jointed", "nothing is missing", lambda d, p, length: pin_jointed(d, length)))
+"""The effects on the pin-jointed theory, by name; the first is the theory itself."""

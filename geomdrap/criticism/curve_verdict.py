@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geomdrap.criticism.curve import EFFECTS, Curve
+from geomdrap.criticism.curve import EFFECTS, Curve, CurveEffect
 from geomdrap.criticism.curve_fit import CurveFit, fit_curve
 
 GAIN = 0.03  # of the theory's held-out error: the least that an effect must win
@@ -30,14 +30,17 @@ class CurveVerdict:
     reasons: tuple[str, ...]
 
 
-def judge_curves(curves: Mapping[str, Curve], split: float) -> CurveVerdict:
-    """Fit every effect to every series up to ``split`` mm and let it predict the rest.
+def judge_curves(
+    curves: Mapping[str, Curve], split: float, effects: Mapping[str, CurveEffect] = EFFECTS
+) -> CurveVerdict:
+    """Fit every one of ``effects`` to every series up to ``split`` mm and let it predict the rest.
 
+    The first of ``effects`` is the theory, the others what it may lack (see `effects_on`).
     Only single causes in their physical range can win; where the series name different ones, or deny each other,
     the verdict is ``ambiguous``. MeasurementError where a series cannot be split so.
     """
     fits = {
-        series: {name: fit_curve(effect, curve, split) for name, effect in EFFECTS.items()}
+        series: {name: fit_curve(effect, curve, split) for name, effect in effects.items()}
         for series, curve in curves.items()
     }
     winners = {name: _winner(table) for name, table in fits.items()}
@@ -48,9 +51,10 @@ def judge_curves(curves: Mapping[str, Curve], split: float) -> CurveVerdict:
 
 
 def _winner(table: Mapping[str, CurveFit]) -> str:
-    able = [fit for fit in table.values() if fit.plausible and fit.effect.single]
+    theory = next(iter(table.values()))
+    able = [theory, *(fit for fit in table.values() if fit.plausible and fit.effect.single)]
     best = min(able, key=lambda fit: fit.held_rms)
-    enough = best.held_rms < (1.0 - GAIN) * table[THEORY].held_rms
+    enough = best is not theory and best.held_rms < (1.0 - GAIN) * theory.held_rms
     return best.effect.name if enough else "none"
 
 
@@ -70,7 +74,7 @@ def _reasons(fits: Mapping[str, Mapping[str, CurveFit]], winners: Mapping[str, s
         if name == "none":
             said.append(f"{series}: no effect foretells the held-out points better than the theory")
             continue
-        before, after = table[THEORY].held_rms, table[name].held_rms
+        before, after = next(iter(table.values())).held_rms, table[name].held_rms
         said.append(f"{series}: {name} foretells the held-out points best, {before:.2f} -> {after:.2f} deg")
         better = [f for f in table.values() if f.held_rms < after and not f.plausible]
         said += [f"{series}: {f.effect.name} would do better, but with values that no cloth has" for f in better]

@@ -12,21 +12,18 @@ LN2 = 0.6931471805599453
 
 @inlined
 def ln(x: float) -> float:
-    """Natural logarithm, to the last digits for x between 2⁻¹⁵ and 2¹⁵; x must be positive.
+    """Natural logarithm, to the last digits for x between 1/181 and 181; x must be positive.
 
-    Powers of two are split off until x lies within √2 of one; there ln x = 2 artanh((x − 1)/(x + 1)).
+    Beyond those, where no cloth goes, it is finite and grows with x, but is not the logarithm. Powers of two are
+    split off until x lies within √2 of one; there ln x = 2 artanh((x − 1)/(x + 1)).
     """
     e = 0.0
-    e = e - 8.0 if x < 0.005524271728019903 else e
-    x = x * 256.0 if x < 0.005524271728019903 else x
     e = e - 4.0 if x < 0.08838834764831845 else e
     x = x * 16.0 if x < 0.08838834764831845 else x
     e = e - 2.0 if x < 0.3535533905932738 else e
     x = x * 4.0 if x < 0.3535533905932738 else x
     e = e - 1.0 if x < 0.7071067811865476 else e
     x = x * 2.0 if x < 0.7071067811865476 else x
-    e = e + 8.0 if x > 181.01933598375618 else e
-    x = x * 0.00390625 if x > 181.01933598375618 else x
     e = e + 4.0 if x > 11.313708498984761 else e
     x = x * 0.0625 if x > 11.313708498984761 else x
     e = e + 2.0 if x > 2.8284271247461903 else e

@@ -55,8 +55,8 @@ def advance(
         membrane_forces(x, f, corners, shape, history, law, keep, take, scratch)
         truss_forces(x, f, ends, truss_law, scratch)
         half = 0.0
-        for at in range(x.shape[0]):
-            half += f[at] * v[at]
+        for at in range(0, x.shape[0], 3):
+            half += f[at] * v[at] + f[at + 1] * v[at + 1] + f[at + 2] * v[at + 2]
         works[INTERNAL] -= 0.5 * step * half
         for k in range(driven.shape[0]):
             for c in range(3):
@@ -76,15 +76,19 @@ def _move(
     for node in range(mass.shape[0]):
         if not free[node]:
             continue
-        dash = 0.5 * damping * step * mass[node]
-        for at in range(3 * node, 3 * node + 3):
-            before = v[at]
-            pull = (f[at] + load[at]) / mass[node] + damping * flow[at]
+        # sums of a node first: each addition to a long sum waits for the one before
+        into, by, gone, at, lighter = 0.0, 0.0, 0.0, 3 * node, 1.0 / mass[node]
+        for c in range(at, at + 3):
+            before = v[c]
+            pull = (f[c] + load[c]) * lighter + damping * flow[c]
             after = (slower * before + step * pull) * scale
-            internal += f[at] * after
-            loads += load[at] * after
-            lost += dash * (0.5 * (before + after) - flow[at]) * (before + after)
-            v[at] = after
+            into += f[c] * after
+            by += load[c] * after
+            gone += (0.5 * (before + after) - flow[c]) * (before + after)
+            v[c] = after
+        internal += into
+        loads += by
+        lost += 0.5 * damping * step * mass[node] * gone
     for t in range(tools.shape[0]):
         _contact(tools[t], step, x, v, f, mass, free, load, impulse[t], works)
     for node in range(mass.shape[0]):

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.forming.elementary import ln
@@ -19,6 +20,9 @@ from geomdrap.geodesic.compiled import kernel
 
 WIDTH = 64
 """Elements in a block."""
+
+ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)
+"""Node numbers are unsigned: signed ones are tested for being negative each time, which costs a tenth of a step."""
 
 SHAPE_ROWS = 5
 (D11, D12, D21, D22, VOLUME) = (WIDTH * row for row in range(SHAPE_ROWS))
@@ -56,13 +60,13 @@ def membrane_forces(
         count = min(WIDTH, corners.shape[0] - first)
         for u in range(WIDTH):
             t = first + min(u, count - 1)
-            a, b, c = 3 * corners[t, 0], 3 * corners[t, 1], 3 * corners[t, 2]
+            a, b, c = THREE * corners[t, 0], THREE * corners[t, 1], THREE * corners[t, 2]
             work[EAX + u] = x[b] - x[a]
-            work[EAY + u] = x[b + 1] - x[a + 1]
-            work[EAZ + u] = x[b + 2] - x[a + 2]
+            work[EAY + u] = x[b + ONE] - x[a + ONE]
+            work[EAZ + u] = x[b + TWO] - x[a + TWO]
             work[EBX + u] = x[c] - x[a]
-            work[EBY + u] = x[c + 1] - x[a + 1]
-            work[EBZ + u] = x[c + 2] - x[a + 2]
+            work[EBY + u] = x[c + ONE] - x[a + ONE]
+            work[EBZ + u] = x[c + TWO] - x[a + TWO]
         stretches(work, shape[block])
         if law[FORM] == HENCKY:
             hencky_stress(work, law[PLANE], law[POISSON])
@@ -74,12 +78,12 @@ def membrane_forces(
         corner_forces(work, shape[block], law[CONSTANT], law[FORM] == GREEN)
         for u in range(count):
             t = first + u
-            a, b, c = 3 * corners[t, 0], 3 * corners[t, 1], 3 * corners[t, 2]
+            a, b, c = THREE * corners[t, 0], THREE * corners[t, 1], THREE * corners[t, 2]
             for k in range(3):
-                fb, fc = work[FBX + k * WIDTH + u], work[FCX + k * WIDTH + u]
-                f[b + k] += fb
-                f[c + k] += fc
-                f[a + k] -= fb + fc
+                fb, fc, axis = work[FBX + k * WIDTH + u], work[FCX + k * WIDTH + u], np.uint64(k)
+                f[b + axis] += fb
+                f[c + axis] += fc
+                f[a + axis] -= fb + fc
 
 
 @kernel
@@ -162,20 +166,18 @@ def rate_stress(w: NDArray, h: NDArray, plane: float, poisson: float) -> None:
 @kernel
 def relax(w: NDArray, h: NDArray, remaining: float, keep: NDArray, take: NDArray) -> None:
     """T = g_∞ T₀ + Σ q_k, with q_k ← keep_k q_k + take_k ΔT₀."""
-    for row in range(3):
-        old, new = h[row * WIDTH : (row + 1) * WIDTH], w[T11 + row * WIDTH : T11 + (row + 1) * WIDTH]
-        change = w[FBX + row * WIDTH : FBX + (row + 1) * WIDTH]  # free until the forces are worked out
-        for u in range(WIDTH):
-            change[u] = new[u] - old[u]
-            old[u] = new[u]
-            new[u] = remaining * new[u]
-        for k in range(keep.shape[0]):
-            a, b = keep[k], take[k]
-            start = FIRST_TERM + k * TERM + row * WIDTH
-            q = h[start : start + WIDTH]
-            for u in range(WIDTH):
-                q[u] = a * q[u] + b * change[u]
-                new[u] += q[u]
+    old, new = h[OLD11 : OLD11 + TERM], w[T11 : T11 + TERM]  # three rows on end: 11, 12, 22
+    change = w[FBX : FBX + TERM]  # free until the forces are worked out
+    for u in range(TERM):
+        change[u] = new[u] - old[u]
+        old[u] = new[u]
+        new[u] = remaining * new[u]
+    for k in range(keep.shape[0]):
+        a, b = keep[k], take[k]
+        q = h[FIRST_TERM + k * TERM : FIRST_TERM + (k + 1) * TERM]
+        for u in range(TERM):
+            q[u] = a * q[u] + b * change[u]
+            new[u] += q[u]
 
 
 @kernel

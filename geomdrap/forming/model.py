@@ -37,12 +37,12 @@ class Model:
     step: float
     limit: float
     damping: float
-    corners: Whole
+    corners: NDArray[np.uint64]
     shape: Array
     law: Array
     keep: Array
     take: Array
-    ends: Whole
+    ends: NDArray[np.uint64]
     family: Whole
     section: Array
     length: Array
@@ -88,8 +88,8 @@ def make_model(
     keep, take = cloth.resin.relaxation.factors(step)
     return Model(
         sheet, cloth, where, free, mass, float(mass.sum() / natural.sum()), step, limit, damping,
-        np.ascontiguousarray(sheet.triangles), _blocks(_shape_rows(sheet, cloth)), _membrane_law(cloth), keep, take,
-        ends, family, section, length, _blocks(_truss_rows(cloth, family, section, length)),
+        sheet.triangles.astype(np.uint64), _blocks(_shape_rows(sheet, cloth)), _membrane_law(cloth), keep, take,
+        ends.astype(np.uint64), family, section, length, _blocks(_truss_rows(cloth, family, section, length)),
     )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.errors import FormingError
+from geomdrap.forming import fibre_law
 from geomdrap.forming.cloth import Cloth
 from geomdrap.forming.model import make_model
 from geomdrap.forming.run import Run, drive
@@ -21,7 +22,7 @@ Whole = NDArray[np.int64]
 DAMPING = 12.0
 """Mass damping times the duration of a run: vibrations fade within a tenth of it."""
 SLOW = 0.02
-"""Share of kinetic energy, from a tenth of the way on, beyond which a run is no longer a slow one."""
+"""Share of kinetic energy, from a quarter of the way on, beyond which a run is no longer a slow one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +46,8 @@ class Pulled:
     """A specimen after its test.
 
     ``displacement`` (f,) mm; ``forces`` N by the name of the reader, each (f,); ``shear`` (f,) deg in the middle of
-    the specimen; ``kinetic_share`` the largest from a tenth of the way on; ``stopped``: a sentence if the test ended
-    early.
+    the specimen; ``kinetic_share`` the largest from a quarter of the way on; ``stopped``: a sentence if the test
+    ended early.
     """
 
     specimen: Specimen
@@ -67,10 +68,8 @@ class Pulled:
         """What the user should look at."""
         said = [self.stopped] if self.stopped else []
         if self.kinetic_share > SLOW:
-            said.append(
-                f"{100 * self.kinetic_share:.1f} % of the energy is kinetic, so that inertia shows in the forces; "
-                "take more steps"
-            )
+            share = f"{100 * self.kinetic_share:.1f} %" if self.kinetic_share < 1.0 else "more than half"
+            said.append(f"{share} of the energy is kinetic, so that inertia shows in the forces; take more steps")
         return said
 
 
@@ -83,10 +82,12 @@ def pull(
     progress: Callable[[float], None] | None = None,
     damping: float = DAMPING,
     safety: float = SAFETY,
+    scale_mass: bool = True,
 ) -> Pulled:
     """Pull ``specimen`` by ``displacement`` mm at ``speed`` mm/min in ``steps`` steps, and read it ``frames`` times.
 
-    Masses are scaled so that the steps are stable. FormingError where a number is out of range.
+    Masses are scaled so that the steps are stable, unless ``scale_mass`` is false. FormingError where a number is out
+    of range.
     """
     if not (displacement > 0.0 and speed > 0.0 and np.isfinite(displacement) and np.isfinite(speed)):
         raise FormingError(f"displacement and speed must be above 0; got {displacement:g} mm and {speed:g} mm/min")
@@ -96,7 +97,9 @@ def pull(
     half = max(1, round(0.5 * steps / frames))
     duration = displacement / pace
     step = duration / (2 * half * frames)
-    model = make_model(specimen.sheet, specimen.cloth, step, specimen.held, damping / duration, safety=safety)
+    model = make_model(
+        specimen.sheet, specimen.cloth, step, specimen.held, damping / duration, scale_mass, safety
+    )
     rest, way = model.sheet.points[model.driven], specimen.flow[model.driven]
 
     def path(time: float) -> Array:
@@ -112,7 +115,7 @@ def _read(specimen: Specimen, run: Run, pace: float) -> Pulled:
         for name, weights in specimen.readers.items()
     }
     shear = np.array([middle_shear(specimen.sheet, f.points) for f in run.frames])
-    late = [f.ledger.kinetic_share for f in run.frames[1:] if f.time >= 0.1 * run.frames[-1].time]
+    late = [f.ledger.kinetic_share for f in run.frames[1:] if f.time >= 0.25 * run.frames[-1].time]
     displacement = pace * np.array([f.time for f in run.frames])
     return Pulled(specimen, run, displacement, forces, shear, max(late, default=0.0), run.stopped)
 
@@ -141,3 +144,15 @@ def middle_shear(sheet: Sheet, points: Array) -> float:
     weights = (sheet.areas * near)[:, None, None]
     mean = (gradients(sheet, points) * weights).sum(axis=0) / weights.sum()
     return float(shear_of(mean))
+
+
+def tensions(pulled: Pulled) -> tuple[Array, Array, Whole]:
+    """Ends (k, 2, 3) mm of the yarn pieces at the end, their tension (k,) N per mm of cloth, family (k,)."""
+    model = pulled.run.model
+    ends = pulled.run.frames[-1].points[model.ends]
+    strain = np.log(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / model.length)
+    tension = np.empty(len(strain))
+    for number, fibre in enumerate(model.cloth.families):
+        mine = model.family == number
+        tension[mine] = fibre_law.stress(fibre, strain[mine]) * fibre.share * model.cloth.thickness
+    return ends, tension, model.family

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.forming.elementary import exp_of_negative, ln
-from geomdrap.forming.membrane import WIDTH
+from geomdrap.forming.membrane import ONE, THREE, TWO, WIDTH
 from geomdrap.geodesic.compiled import kernel
 
 LAW_ROWS = 5
@@ -32,17 +33,17 @@ def truss_forces(x: NDArray, f: NDArray, ends: NDArray, law: NDArray, work: NDAr
         count = min(WIDTH, ends.shape[0] - first)
         for u in range(WIDTH):
             t = first + min(u, count - 1)
-            i, j = 3 * ends[t, 0], 3 * ends[t, 1]
+            i, j = THREE * ends[t, 0], THREE * ends[t, 1]
             work[X + u] = x[j] - x[i]
-            work[Y + u] = x[j + 1] - x[i + 1]
-            work[Z + u] = x[j + 2] - x[i + 2]
+            work[Y + u] = x[j + ONE] - x[i + ONE]
+            work[Z + u] = x[j + TWO] - x[i + TWO]
         tensions(work, law[block])
         for u in range(count):
-            i, j = 3 * ends[first + u, 0], 3 * ends[first + u, 1]
+            i, j = THREE * ends[first + u, 0], THREE * ends[first + u, 1]
             for k in range(3):
-                force = work[X + k * WIDTH + u]
-                f[i + k] += force
-                f[j + k] -= force
+                force, axis = work[X + k * WIDTH + u], np.uint64(k)
+                f[i + axis] += force
+                f[j + axis] -= force
 
 
 @kernel

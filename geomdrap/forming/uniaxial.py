@@ -23,8 +23,9 @@ def strip_specimen(
     if cells < 2:
         raise FormingError(f"a strip needs at least 2 cells across; got {cells}")
     sheet = strip(length, width, angle, _pitch(width, angle, cells))
-    y = sheet.points[:, 1]
-    below, above = (np.flatnonzero(np.abs(y - level) < 1e-6 * length) for level in (-0.5 * length, 0.5 * length))
+    x, y = sheet.points[:, 0], sheet.points[:, 1]
+    clamped = np.abs(x) < (0.5 + 1e-6) * width
+    below, above = (np.flatnonzero(clamped & (np.abs(y - end * length) < 1e-6 * length)) for end in (-0.5, 0.5))
     flow, weights = np.zeros_like(sheet.points), np.zeros_like(sheet.points)
     flow[:, 1] = y / length + 0.5
     flow[below, 1], flow[above, 1] = 0.0, 1.0

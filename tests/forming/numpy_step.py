@@ -23,15 +23,15 @@ class NumpyStep:
         share, tau = np.asarray(resin.relaxation.shares), np.asarray(resin.relaxation.times)
         self.keep, self.take = np.exp(-model.step / tau), -share * np.expm1(-model.step / tau) / (model.step / tau)
         self.lasting = 1.0 - share.sum()
-        self.old = np.zeros((len(flat), 3))
-        self.terms = np.zeros((len(share), len(flat), 3))
+        self.old = np.zeros((3, len(flat)))
+        self.terms = np.zeros((len(share), 3, len(flat)))
         families = [model.cloth.families[k] for k in sheet.family]
         self.length = np.linalg.norm(np.diff(sheet.fabric[sheet.pieces], axis=1)[:, 0], axis=1)
         self.section = np.array([f.share for f in families]) * model.cloth.thickness * sheet.width
         self.modulus, self.crimp, self.push = (
             np.array([getattr(f, n) for f in families]) for n in ("modulus", "undulation", "compression")
         )
-        nodes = np.concatenate([sheet.triangles.ravel(), sheet.pieces.ravel()])
+        nodes = np.concatenate([sheet.triangles.T.ravel(), sheet.pieces.T.ravel()])
         self.gather = csr_matrix((np.ones(len(nodes)), (nodes, np.arange(len(nodes)))), (len(self.x), len(nodes)))
         self.f = self.forces()
         self.v = np.zeros_like(self.x)
@@ -40,30 +40,30 @@ class NumpyStep:
 
     def forces(self) -> np.ndarray:
         """Forces (n, 3) of the fabric; the history is carried on."""
-        sheet = self.model.sheet
-        p = self.x[sheet.triangles]
-        deformation = np.stack([p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]], axis=-1) @ self.inverse
-        c = np.swapaxes(deformation, 1, 2) @ deformation
-        c11, c12, c22 = c[:, 0, 0], c[:, 0, 1], c[:, 1, 1]
+        a, b, c = (self.x[n] for n in self.model.sheet.triangles.T)
+        d11, d12, d21, d22 = (self.inverse[:, i, j, None] for i in (0, 1) for j in (0, 1))
+        fu, fv = (b - a) * d11 + (c - a) * d21, (b - a) * d12 + (c - a) * d22
+        c11, c12, c22 = (np.einsum("mi,mi->m", p, q) for p, q in ((fu, fu), (fu, fv), (fv, fv)))
         mean, radius = 0.5 * (c11 + c22), np.sqrt((0.5 * (c11 - c22)) ** 2 + c12**2)
         j = np.sqrt(c11 * c22 - c12**2)
         with np.errstate(invalid="ignore", divide="ignore"):
             factor = np.where(radius > 1e-9, np.arctanh(radius / mean) / (2 * radius), 0.5 / mean)
-        h = np.stack([0.5 * np.log(j) + factor * (c11 - mean), 0.5 * np.log(j) + factor * (c22 - mean), factor * c12], 1)
-        elastic = h @ self.law.T
+        area = 0.5 * np.log(j)
+        h = np.stack([area + factor * (c11 - mean), area + factor * (c22 - mean), factor * c12])
+        elastic = self.law @ h
         change, self.old = elastic - self.old, elastic
-        self.terms = self.keep[:, None, None] * self.terms + self.take[:, None, None] * change
-        t = self.lasting * elastic + self.terms.sum(axis=0)
-        inverse_u = np.empty_like(c)
-        root = np.sqrt(c11 + c22 + 2 * j)
-        inverse_u[:, 0, 0], inverse_u[:, 1, 1] = (c22 + j) / (root * j), (c11 + j) / (root * j)
-        inverse_u[:, 0, 1] = inverse_u[:, 1, 0] = -c12 / (root * j)
-        stress = np.empty_like(c)
-        stress[:, 0, 0], stress[:, 1, 1], stress[:, 0, 1], stress[:, 1, 0] = t[:, 0], t[:, 1], t[:, 2], t[:, 2]
-        piola = deformation @ inverse_u @ stress @ inverse_u
-        edge = -self.volume[:, None, None] * piola @ np.swapaxes(self.inverse, 1, 2)
-        corner = np.stack([-edge.sum(axis=2), edge[:, :, 0], edge[:, :, 1]], axis=1)
-        return self.gather @ np.concatenate([corner.reshape(-1, 3), self._yarns()])
+        self.terms *= self.keep[:, None, None]
+        self.terms += self.take[:, None, None] * change
+        t11, t22, t12 = self.lasting * elastic + self.terms.sum(axis=0)
+        root = np.sqrt(c11 + c22 + 2 * j) * j
+        v11, v12, v22 = (c22 + j) / root, -c12 / root, (c11 + j) / root  # of U⁻¹
+        s11 = v11 * v11 * t11 + 2 * v11 * v12 * t12 + v12 * v12 * t22
+        s12 = v11 * v12 * t11 + (v11 * v22 + v12 * v12) * t12 + v12 * v22 * t22
+        s22 = v12 * v12 * t11 + 2 * v12 * v22 * t12 + v22 * v22 * t22
+        pu = -self.volume[:, None] * (fu * s11[:, None] + fv * s12[:, None])
+        pv = -self.volume[:, None] * (fu * s12[:, None] + fv * s22[:, None])
+        fb, fc = pu * d11 + pv * d12, pu * d21 + pv * d22
+        return self.gather @ np.concatenate([-fb - fc, fb, fc, self._yarns()])
 
     def _yarns(self) -> np.ndarray:
         ends = self.x[self.model.sheet.pieces]
@@ -74,7 +74,7 @@ class NumpyStep:
         slack = np.where(self.crimp > 0, crimp * (1 - np.exp(-np.maximum(strain, 0) / crimp)), 0.0)
         force = self.section * self.modulus * np.where(strain > 0, strain - slack, self.push * strain)
         pull = (force / length)[:, None] * along
-        return np.stack([pull, -pull], axis=1).reshape(-1, 3)
+        return np.concatenate([pull, -pull])
 
     def step(self) -> None:
         """One step."""

@@ -69,7 +69,9 @@ def test_the_modes_of_a_bar_have_the_frequencies_of_the_scheme(number: int) -> N
         seen.append(float(np.sum((state.points - model.sheet.points) * shape) / np.sum(shape * shape)))
     steps = model.step * np.arange(1, 61)
     # half a step before the start the velocity was 1e-4: the displacement is a sine through the origin
-    assert seen == pytest.approx(1e-4 * np.sin(discrete * steps) * model.step / np.sin(discrete * model.step), abs=1e-10)
+    assert seen == pytest.approx(
+        1e-4 * np.sin(discrete * steps) * model.step / np.sin(discrete * model.step), abs=1e-10
+    )
 
 
 def test_the_bound_is_below_the_limit_of_the_fastest_vibration() -> None:
@@ -92,9 +94,7 @@ def test_the_bound_is_below_the_limit_of_the_fastest_vibration() -> None:
     assert 0.5 * (2.0 / fastest) < model.limit <= 2.0 / fastest
 
 
-@pytest.mark.parametrize(
-    ("cells", "error"), [(10, 2.95e-3), (20, 7.4e-4), (40, 1.85e-4), (80, 4.6e-5)]
-)
+@pytest.mark.parametrize(("cells", "error"), [(10, 2.95e-3), (20, 7.4e-4), (40, 1.85e-4), (80, 4.6e-5)])
 def test_a_hanging_chain_swings_as_bessel_says(cells: int, error: float) -> None:
     """ω₁ = j₀₁/2 √(g/L), to second order in the piece, from forces of the model about its stretched rest."""
     from scipy.linalg import eigh
@@ -167,9 +167,9 @@ def test_a_net_shaken_hard_keeps_its_energy(safety: float, error: float) -> None
     assert np.abs(momentum).max() < 1e-15
 
 
-@pytest.mark.parametrize(("safety", "error"), [(0.3, 1.8e-3), (0.5, 2.9e-3), (0.9, 1.3e-2)])
+@pytest.mark.parametrize(("safety", "error"), [(0.15, 6e-4), (0.3, 1.8e-3), (0.5, 2.1e-3), (0.9, 1.3e-2)])
 def test_a_net_of_undulated_yarns_that_go_slack_keeps_its_energy(safety: float, error: float) -> None:
-    yarns = Fibre(undulation=0.005, compression=0.01)
+    yarns = Fibre(undulation=0.005, compression=0.0)
     early, late, momentum = _shaken(Cloth(yarns, yarns, Resin(relaxation=ELASTIC)), safety)
     assert max(early, late) < error
     assert late < 2.0 * early

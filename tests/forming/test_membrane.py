@@ -52,7 +52,9 @@ def test_the_stress_is_that_of_the_logarithm_of_the_stretch(size: float) -> None
 @pytest.mark.parametrize(("gamma", "s12", "s11"), [(1.0, 0.869784, 0.415900), (2.0, 1.386294, 1.141593)])
 def test_the_rate_form_gives_dienes_solution_in_simple_shear(gamma: float, s12: float, s11: float) -> None:
     """J. K. Dienes, Acta Mechanica 32 (1979) 217. The stress in the frame of U is turned into space by R."""
-    model, state = _deformed(resin_alone(strain="green-naghdi"), _plane(np.array([[1.0, gamma], [0.0, 1.0]])), 1, 4000)
+    model, state = _deformed(
+        resin_alone(strain="green-naghdi"), _plane(np.array([[1.0, gamma], [0.0, 1.0]])), 1, 4000
+    )
     t = _elastic_stress(model, state)[0]
     turn = polar(np.array([[1.0, gamma], [0.0, 1.0]]))[0]
     stress = turn @ np.array([[t[0], t[1]], [t[1], t[2]]]) @ turn.T / SHEAR_MODULUS
@@ -142,7 +144,9 @@ def test_a_rotation_leaves_the_relaxing_stresses_as_they_are() -> None:
             state.x[:] = place.ravel()
             add_forces(model, state)
     assert turned.history == pytest.approx(still.history, abs=1e-12 * np.abs(still.history).max())
-    assert turned.f.reshape(-1, 3) == pytest.approx(still.f.reshape(-1, 3) @ turn.T, abs=1e-11 * np.abs(still.f).max())
+    assert turned.f.reshape(-1, 3) == pytest.approx(
+        still.f.reshape(-1, 3) @ turn.T, abs=1e-11 * np.abs(still.f).max()
+    )
 
 
 @pytest.mark.parametrize("strain", ["hencky", "green"])

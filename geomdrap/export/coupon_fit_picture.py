@@ -1,0 +1,119 @@
+"""fit.png: measured and fitted curves of a test, and the parameters, or the errors of what the curves may lack."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from geomdrap.export import palette
+from geomdrap.export.compare_picture import save
+from geomdrap.export.coupon_picture import COLOURS
+
+if TYPE_CHECKING:
+    from geomdrap.criticism.curve_verdict import CurveVerdict
+    from geomdrap.forming.fit_coupon import CouponFit
+
+UNITS = {"shear": "shear in the middle [deg]"}
+
+
+def write(fits: Mapping[str, CouponFit], verdict: CurveVerdict | None, path: Path) -> None:
+    """Write fit.png; no date or path in it. GeomdrapError if it cannot be written."""
+    save(figure_of(fits, verdict), path)
+
+
+def figure_of(fits: Mapping[str, CouponFit], verdict: CurveVerdict | None) -> Any:
+    """The page: a plot per kind of reading, and what was found."""
+    from matplotlib.figure import Figure
+
+    first = next(iter(fits.values()))
+    kinds = ["force" if c.startswith("force") else c for c in first.measured]
+    kinds = list(dict.fromkeys(kinds))
+    figure = Figure(figsize=(6.0 * len(kinds) + 6.5, 5.4), dpi=110, facecolor=palette.PAPER, layout="constrained")
+    *plots, right = figure.subplots(1, len(kinds) + 1)
+    for axes, kind in zip(plots, kinds, strict=True):
+        _curves(axes, kind, fits)
+    if verdict is None:
+        _parameters(right, fits)
+    else:
+        _errors(right, verdict)
+    lacks = "" if verdict is None else f"; what it lacks: {_lack(verdict)}"
+    figure.suptitle(f"{first.test} test, fitted{lacks}", fontsize=12, color=palette.INK)
+    return figure
+
+
+def _lack(verdict: CurveVerdict) -> str:
+    named = " or ".join(dict.fromkeys(verdict.candidates.values()))
+    return f"ambiguous, {named}" if verdict.verdict == "ambiguous" else verdict.verdict
+
+
+def _curves(axes: Any, kind: str, fits: Mapping[str, CouponFit]) -> None:
+    number = 0
+    for series, fit in fits.items():
+        for column, values in fit.measured.items():
+            if not column.startswith(kind):
+                continue
+            colour, side = COLOURS[number % len(COLOURS)], column.removeprefix(kind).strip("_")
+            label = ", ".join(w for w in (side, series if len(fits) > 1 else "") if w)
+            axes.plot(fit.displacement, values, "o", color=colour, markersize=3.5, label=f"measured {label}".strip())
+            axes.plot(fit.displacement, fit.fitted[column], color=colour, label=f"fitted {label}".strip())
+            number += 1
+    axes.set(xlabel="displacement [mm]", ylabel=UNITS.get(kind, "force [N]"))
+    axes.set_xlim(left=0.0)
+    axes.set_ylim(bottom=0.0)
+    axes.legend(frameon=False, fontsize=8.5)
+    _bare(axes)
+
+
+def _parameters(axes: Any, fits: Mapping[str, CouponFit]) -> None:
+    """Values over the first series' with their 95 % intervals."""
+    from geomdrap.forming.fit_coupon import UNITS as PARAMETER_UNITS
+
+    first = next(iter(fits.values())).identified
+    for number, (series, fit) in enumerate(fits.items()):
+        found = fit.identified
+        for k, name in enumerate(found.names):
+            low, high = found.interval[k] / first.values[k]
+            middle, y = found.values[k] / first.values[k], k + 0.2 * number
+            axes.errorbar(
+                middle, y, xerr=[[middle - low], [high - middle]], fmt="o", color=COLOURS[number], capsize=4
+            )
+            words = f"{name} {found.values[k]:.4g} ± {found.sigma[k]:.2g} {PARAMETER_UNITS[name]}".strip()
+            axes.annotate(
+                words if len(fits) == 1 else f"{words} ({series})", (middle, y), (0, 8), textcoords="offset points",
+                ha="center", fontsize=8.5, color=palette.INK,
+            )  # fmt: skip
+    axes.set(
+        yticks=[], xlabel="value over the fitted one, with the 95 % interval", ylim=(-0.5, len(first.names) - 0.2)
+    )
+    axes.margins(x=0.3)
+    axes.invert_yaxis()
+    _bare(axes)
+
+
+def _errors(axes: Any, verdict: CurveVerdict) -> None:
+    """Errors of each effect and series: of the fit to all points, and of the held-out ones."""
+    names = list(next(iter(verdict.fits.values())))
+    height = 0.8 / (2 * len(verdict.fits))
+    for number, (series, fits) in enumerate(verdict.fits.items()):
+        at = [k + (2 * number - len(verdict.fits) + 0.5) * height for k in range(len(names))]
+        held, whole = ([getattr(fits[name], key) for name in names] for key in ("held_rms", "rms"))
+        axes.barh(at, held, height, color=COLOURS[number], label=f"{series}: held out")
+        axes.barh(
+            [y + height for y in at], whole, height, color=COLOURS[number], alpha=0.4, label=f"{series}: all points"
+        )
+        for y, name, error in zip(at, names, held, strict=True):
+            mark = "" if fits[name].plausible else " (values not plausible)"
+            best = "  best" if name == verdict.candidates[series] else ""
+            axes.text(error, y, f" {error:.2f}{mark}{best}", va="center", fontsize=7, color=palette.INK)
+    axes.set(yticks=range(len(names)), yticklabels=names, xlabel="root mean square error of the shear [deg]")
+    axes.margins(x=0.35)
+    axes.set_xlim(left=0.0)
+    axes.invert_yaxis()
+    axes.legend(frameon=False, fontsize=8)
+    _bare(axes)
+
+
+def _bare(axes: Any) -> None:
+    for name, side in axes.spines.items():
+        side.set_visible(name in ("left", "bottom"))

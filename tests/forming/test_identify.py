@@ -1,0 +1,173 @@
+"""T16: a fit finds what a twin was made with; it says what it cannot find, and which test would help."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geomdrap.errors import FormingError
+from geomdrap.forming import ELASTIC, Cloth, Fibre, Resin
+from geomdrap.forming.biaxial import JERSEY
+from geomdrap.forming.fit_coupon import fit_coupon, predict, usual_cloth, with_values
+from geomdrap.forming.identify import identify, slopes_of, spread_of, with_more
+from geomdrap.forming.readings import read_test
+
+FAST = {"cells": 8, "steps": 2000}
+TRUTH = {"warp-modulus": 32.1, "weft-modulus": 92.6, "undulation": 0.2, "resin-modulus": 0.3}
+FAR = {"warp-modulus": 20.0, "weft-modulus": 150.0, "undulation": 0.1, "resin-modulus": 0.6}
+
+
+def _twin(seed: int, noise: float = 0.01) -> dict[str, np.ndarray]:
+    d = np.linspace(2.8, 140.0, 50)
+    clean = predict("biaxial", with_values(JERSEY, TRUTH), FAST, d, ("force_warp", "force_weft"))
+    rng = np.random.default_rng(seed)
+    return {"displacement": d, **{c: v * (1.0 + noise * rng.normal(size=v.shape)) for c, v in clean.items()}}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_biaxial_twin_with_one_percent_of_noise_is_found_within_five_percent(seed: int) -> None:
+    found = fit_coupon("biaxial", _twin(seed), with_values(JERSEY, FAR), FAST).identified
+    assert found.converged
+    for name, value, sigma in zip(found.names, found.values, found.sigma, strict=True):
+        assert value == pytest.approx(TRUTH[name], rel=0.05)
+        assert abs(value - TRUTH[name]) < 4.0 * sigma
+    assert all(0.006 < s < 0.015 for s in found.scatter.values())
+
+
+@pytest.mark.slow
+def test_intervals_cover_the_truth_and_scatter_as_the_estimates_do() -> None:
+    """On the model made straight at the truth, where a fit costs nothing: 200 twins."""
+    d = np.linspace(2.8, 140.0, 50)
+    columns = ("force_warp", "force_weft")
+    base = predict("biaxial", with_values(JERSEY, TRUTH), FAST, d, columns)
+    h, slopes = 0.01, {}
+    for name, value in TRUTH.items():
+        up = predict("biaxial", with_values(JERSEY, {**TRUTH, name: value * np.exp(h)}), FAST, d, columns)
+        slopes[name] = {c: np.log(up[c] / base[c]) / h for c in columns}
+
+    def straight(values: dict[str, float]) -> dict[str, np.ndarray]:
+        return {c: base[c] * np.exp(sum(np.log(values[n] / TRUTH[n]) * slopes[n][c] for n in TRUTH)) for c in columns}
+
+    rng, inside, off = np.random.default_rng(7), [], []
+    for _ in range(200):
+        noisy = {c: v * (1.0 + 0.01 * rng.normal(size=v.shape)) for c, v in base.items()}
+        found = identify(straight, noisy, TRUTH)
+        truth = np.array(list(TRUTH.values()))
+        inside.append((found.interval[:, 0] < truth) & (truth < found.interval[:, 1]))
+        off.append((found.values - truth) / found.sigma)
+    assert np.all(np.abs(np.mean(inside, axis=0) - 0.95) < 0.05)
+    assert np.std(off, axis=0) == pytest.approx(np.ones(4), abs=0.2)
+
+
+def test_the_scatter_of_estimates_follows_from_the_slopes() -> None:
+    slopes = np.array([[1.0, 0.0], [0.0, 2.0], [0.0, 0.0]])
+    sigma, correlation = spread_of(slopes)
+    assert sigma == pytest.approx([1.0, 0.5])
+    assert correlation == pytest.approx(np.eye(2))
+    sigma, correlation = spread_of(np.array([[1.0, 1.0], [1.0, 1.0], [2.0, 2.0001]]))
+    assert abs(correlation[0, 1]) > 0.99
+    assert sigma.min() > 1e3
+
+
+def test_what_no_reading_shows_has_no_finite_interval() -> None:
+    found = identify(
+        lambda p: {"force": p["a"] * np.arange(1.0, 9.0)}, {"force": 3.0 * np.arange(1.0, 9.0)}, {"a": 1.0, "b": 1.0}
+    )
+    assert found.values[0] == pytest.approx(3.0, rel=1e-5)
+    assert found.loose == ["b"]
+
+
+def test_two_parameters_that_act_as_one_are_named_and_a_further_test_tells_them_apart() -> None:
+    x, rng = np.arange(1.0, 30.0), np.random.default_rng(0)
+    noisy = {"force": 6.0 * x * (1.0 + 0.01 * rng.normal(size=len(x)))}
+    found = identify(lambda p: {"force": p["a"] * p["b"] * (x + 1e-3 * p["b"] * x**2)}, noisy, {"a": 1.0, "b": 2.0})
+    assert [pair[:2] for pair in found.confounded] == [("a", "b")]
+    other = slopes_of(lambda p: {"force": p["b"] * x}, found, 0.01)
+    better = with_more(found, other)
+    assert np.all(better < 0.2 * found.sigma)
+
+
+def test_more_of_the_same_test_shrinks_intervals_by_the_root_of_two() -> None:
+    x, rng = np.arange(1.0, 30.0), np.random.default_rng(0)
+    noisy = {"force": 2.0 * x * (1.0 + 0.01 * rng.normal(size=len(x)))}
+    found = identify(lambda p: {"force": p["a"] * x}, noisy, {"a": 1.0})
+    assert with_more(found, found.slopes) == pytest.approx(found.sigma / np.sqrt(2.0), rel=1e-12)
+
+
+def test_the_resin_of_a_picture_frame_twin_is_found() -> None:
+    cloth = Cloth(resin=Resin(modulus=30.0))
+    d = np.linspace(2.0, 40.0, 15)
+    readings = {"displacement": d, **predict("picture-frame", cloth, {}, d, ("force",))}
+    found = fit_coupon("picture-frame", readings, Cloth()).identified
+    assert found.names == ("resin-modulus",)
+    assert found.values[0] == pytest.approx(30.0, rel=1e-4)
+
+
+@pytest.mark.slow
+def test_shear_alone_shows_the_ratio_of_stiffnesses_and_a_twin_of_it_is_found() -> None:
+    straight = Fibre(modulus=40_000.0, undulation=0.0)
+    cloth, settings = Cloth(straight, straight, Resin(relaxation=ELASTIC)), {"cells": 6, "frames": 20}
+    d = np.linspace(3.0, 40.0, 20)
+    readings = {"displacement": d, **predict("bias-extension", cloth, settings, d, ("shear",))}
+    start = with_values(cloth, {"fibre-modulus": 130_000.0})
+    found = fit_coupon("bias-extension", readings, start, settings).identified
+    assert found.names == ("fibre-modulus",)
+    assert found.values[0] == pytest.approx(40_000.0, rel=0.01)
+    with pytest.raises(FormingError, match="only the ratio"):
+        fit_coupon("bias-extension", readings, start, settings, ("fibre-modulus", "resin-modulus"))
+
+
+def test_a_table_is_read_by_series_and_sorted(tmp_path: Path) -> None:
+    path = tmp_path / "t.csv"
+    path.write_text("# note\nseries,displacement,force,who\na,2,20,x\na,1,10,y\nb,1,,z\n", encoding="utf-8")
+    read = read_test(path)
+    assert list(read) == ["a", "b"]
+    assert read["a"]["displacement"].tolist() == [1.0, 2.0]
+    assert read["a"]["force"].tolist() == [10.0, 20.0]
+    assert np.isnan(read["b"]["force"][0])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "is empty"),
+        ("displacement,force\n", "no readings"),
+        ("displacement,load\n1,2\n", "needs the column displacement and one of force"),
+        ("displacement,force\n1,two\n", "line 2: 'two' under force is not a number"),
+        ("displacement,force\n1,2,3\n", "has 3 cells under 2 headings"),
+        ("displacement,force\n-1,2\n", "below 0 mm"),
+        ("displacement,force\n1,inf\n", "not a number"),
+    ],
+)
+def test_a_table_that_cannot_be_read_is_refused_with_its_name(text: str, said: str, tmp_path: Path) -> None:
+    path = tmp_path / "t.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(FormingError, match=said) as error:
+        read_test(path)
+    assert "t.csv" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("test", "columns", "names", "said"),
+    [
+        ("biaxial", {"force": 1.0}, None, "fitted by force_warp or force_weft"),
+        ("picture-frame", {"force": 1.0}, ("undulation",), "does not show undulation"),
+        ("uniaxial", {"force": 0.0}, None, "no reading other than 0"),
+        ("torsion", {"force": 1.0}, None, "no test 'torsion'"),
+    ],
+)
+def test_readings_that_do_not_suit_the_test_are_refused(
+    test: str, columns: dict, names: tuple | None, said: str
+) -> None:
+    d = np.arange(1.0, 6.0)
+    readings = {"displacement": d, **{c: np.full(5, v) for c, v in columns.items()}}
+    with pytest.raises(FormingError, match=said):
+        fit_coupon(test, readings, Cloth() if test == "torsion" else usual_cloth(test), {}, names)
+
+
+def test_too_few_readings_are_refused() -> None:
+    with pytest.raises(FormingError, match="too few readings for 2 parameters"):
+        identify(lambda p: {"force": np.ones(2)}, {"force": np.ones(2)}, {"a": 1.0, "b": 1.0})
