@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.fields.evaluate import areas, statistics, unit_directions
+from geomdrap.fields.evaluate import areas, sheared, statistics, unit_directions
 from geomdrap.fields.result import Areas, ShearStatistics
 from geomdrap.fields.trim import Trimmed, trim
 
@@ -35,16 +35,16 @@ def figures(net: Net, limit_angle: float | None = None) -> Figures:
     fabric = net.fabric if limit_angle is None else replace(net.fabric, limit_angle=limit_angle)
     trimmed = trim(net)
     warp, weft = unit_directions(trimmed)
-    shear = np.degrees(np.arcsin(np.clip((warp * weft).sum(axis=1), -1.0, 1.0)))
-    return Figures(areas(trimmed), statistics(net, trimmed, shear, fabric.limit_angle), least_blank(net, trimmed))
+    found = statistics(net, trimmed, sheared(warp, weft), fabric.limit_angle)
+    return Figures(areas(trimmed), found, least_blank(net, trimmed))
 
 
 def least_blank(net: Net, trimmed: Trimmed) -> tuple[float, float]:
     """Length and width, mm, of the least rectangle along the yarns that the ply can be cut from."""
-    corners = trimmed.at[trimmed.kind > 0].reshape(-1, 2)
-    if len(corners) == 0:
+    if not trimmed.kind.any():
         return 0.0, 0.0
-    low, high = corners.min(axis=0), corners.max(axis=0)
+    ends = [(np.nanmin(x), np.nanmax(x)) for x in trimmed.at.reshape(-1, 2).T]  # NaN where bare
+    low, high = np.array(ends).T
     if net.reach is not None:
         low, high = np.maximum(low, np.negative(net.reach)), np.minimum(high, net.reach)
     return float(high[0] - low[0]), float(high[1] - low[1])
