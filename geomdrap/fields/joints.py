@@ -16,7 +16,10 @@ def find_joints(at: np.ndarray, kind: np.ndarray, neighbours: np.ndarray, neighb
     count = 0
     for f in range(len(kind)):
         for k in range(3):
-            if kind[f] > 0 and f < neighbours[f, k] and not is_open(at, kind, neighbours, neighbour_edge, f, k):
+            if kind[f] == 0 or f >= neighbours[f, k]:
+                continue
+            whole = surely_joined(kind, neighbours, f, k)
+            if whole or not is_open(at, kind, neighbours, neighbour_edge, f, k):
                 out[count] = 3 * f + k
                 count += 1
     return out[:count]
