@@ -20,10 +20,13 @@ from geomdrap.cli.options import (
     reading_options,
     seed_options,
 )
+from geomdrap.cli.values import Number
 
 if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
     from geomdrap.fields import Drape
+
+THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
 
 
 @click.command()
@@ -34,11 +37,28 @@ if TYPE_CHECKING:
 @reading_options
 @folder_option("drape", "Folder for the result files; it is made if it is missing.")
 @outputs_option
+@click.option(
+    "--plies",
+    metavar="DEG,DEG,...",
+    help="A stack instead of one ply: angles from --angle, the tool's side first, each ply draped on those below it.",
+)
+@click.option(
+    "--ply-thickness",
+    type=Number("MM", above=0.0),
+    help="Thickness of a flat ply of the stack, which grows where it shears.  [default: 0.25]",
+)
 @click.option("--strict", is_flag=True, help="Exit with code 1 if less than 99.5 % of the part is covered.")
 @json_option
 @quiet_option
 def drape(
-    folder: Path, outputs: tuple[str, ...], strict: bool, as_json: bool, quiet: bool, **asked: Any
+    folder: Path,
+    outputs: tuple[str, ...],
+    plies: str | None,
+    ply_thickness: float | None,
+    strict: bool,
+    as_json: bool,
+    quiet: bool,
+    **asked: Any,
 ) -> int:
     """Drape PART: net, shear map, flat pattern, statistics.
 
@@ -50,6 +70,7 @@ def drape(
       geomdrap drape hood.stl
       geomdrap drape hemisphere.stl --origin -5,5,84.4 --angle 45 --pitch 4 -o hemisphere-45
       geomdrap drape hood.stl --origin vertex:120 --blank 800x600 --outputs json,dxf --json
+      geomdrap drape hood.stl --plies 0,45,-45,90 --ply-thickness 0.3 -o laminate
       geomdrap drape hood.stl --effect slip:coefficient=0.6 --effect thickness:offset=1.5
     """
     from geomdrap.cli.messages import print_json, say
@@ -59,6 +80,12 @@ def drape(
     from geomdrap.export.report_json import as_dict, is_incomplete
 
     _check_folder(folder, outputs)
+    if plies is not None:
+        from geomdrap.cli.plies import drape_plies
+
+        return drape_plies(plies, ply_thickness or THICKNESS, folder, outputs, strict, as_json, quiet, **asked)
+    if ply_thickness is not None:
+        raise click.UsageError("--ply-thickness needs --plies", click.get_current_context())
     with Progress(quiet) as progress:
         result = compute(progress, lambda: announce_compilation(quiet), **asked)
         progress.step("Writing")
