@@ -38,6 +38,18 @@ THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
 @folder_option("drape", "Folder for the result files; it is made if it is missing.")
 @outputs_option
 @click.option(
+    "--warp-guide",
+    type=click.Path(path_type=Path),
+    metavar="FILE.csv",
+    help="Curve on the part (columns x, y, z) that the warp through the origin follows, in place of --angle.",
+)
+@click.option(
+    "--weft-guide",
+    type=click.Path(path_type=Path),
+    metavar="FILE.csv",
+    help="The same for the weft; with both the ply is laid from where they cross.",
+)
+@click.option(
     "--plies",
     metavar="DEG,DEG,...",
     help="A stack instead of one ply: angles from --angle, the tool's side first, each ply draped on those below it.",
@@ -70,6 +82,7 @@ def drape(
       geomdrap drape hood.stl
       geomdrap drape hemisphere.stl --origin -5,5,84.4 --angle 45 --pitch 4 -o hemisphere-45
       geomdrap drape hood.stl --origin vertex:120 --blank 800x600 --outputs json,dxf --json
+      geomdrap drape hood.stl --warp-guide spine.csv
       geomdrap drape hood.stl --plies 0,45,-45,90 --ply-thickness 0.3 -o laminate
       geomdrap drape hood.stl --effect slip:coefficient=0.6 --effect thickness:offset=1.5
     """
@@ -80,9 +93,12 @@ def drape(
     from geomdrap.export.report_json import as_dict, is_incomplete
 
     _check_folder(folder, outputs)
+    if click.get_current_context().get_parameter_source("angle") == ParameterSource.COMMANDLINE:
+        _refuse_guides(asked, "--angle")
     if plies is not None:
         from geomdrap.cli.plies import drape_plies
 
+        _refuse_guides(asked, "--plies")
         return drape_plies(plies, ply_thickness or THICKNESS, folder, outputs, strict, as_json, quiet, **asked)
     if ply_thickness is not None:
         raise click.UsageError("--ply-thickness needs --plies", click.get_current_context())
@@ -119,6 +135,23 @@ def _left_over(folder: Path, files: Mapping[str, Path]) -> Iterator[str]:
         yield f"{', '.join(names)} in {folder} {'is' if len(names) == 1 else 'are'} of an earlier run"
 
 
+def _refuse_guides(asked: dict[str, Any], other: str) -> None:
+    """Refuse guide curves beside an option that says something else; without that they are taken away."""
+    for name in ("warp_guide", "weft_guide"):
+        if asked[name] is not None:
+            option = "--" + name.replace("_", "-")
+            raise click.UsageError(f"{option} and {other} contradict each other", click.get_current_context())
+        if other == "--plies":
+            del asked[name]
+
+
+def read_guides(**files: Path | None) -> dict[str, Any]:
+    """The points of guide curves by name."""
+    from geomdrap.sweep.origins import read_points
+
+    return {name: read_points(file) for name, file in files.items() if file is not None}
+
+
 def compute(
     progress: Progress,
     before_drape: Callable[[], None] = lambda: None,
@@ -131,6 +164,8 @@ def compute(
     limit_angle: float | None,
     effect_texts: tuple[str, ...] = (),
     model: Path | None = None,
+    warp_guide: Path | None = None,
+    weft_guide: Path | None = None,
     plugins: tuple[Path, ...] = (),
     **drape_options: Any,
 ) -> Drape:
@@ -144,7 +179,8 @@ def compute(
     before_drape()
     progress.step("Draping")
     reach = (blank[0] / 2, blank[1] / 2) if blank else None
-    net = gd.drape(surface, reach=reach, effects=effects, **drape_options)
+    guides = read_guides(warp_guide=warp_guide, weft_guide=weft_guide)
+    net = gd.drape(surface, reach=reach, effects=effects, **guides, **drape_options)
     progress.step("Evaluating")
     result: Drape = gd.evaluate(net, limit_angle, progress.share)
     return result
