@@ -13,6 +13,7 @@ import numpy as np
 from geomdrap.fields.evaluate import areas, sheared, statistics, unit_directions
 from geomdrap.fields.result import Areas, ShearStatistics
 from geomdrap.fields.trim import Trimmed, trim
+from geomdrap.geodesic.compiled import kernel
 
 if TYPE_CHECKING:
     from geomdrap.fishnet import Net
@@ -39,12 +40,21 @@ def figures(net: Net, limit_angle: float | None = None) -> Figures:
     return Figures(areas(trimmed), found, least_blank(net, trimmed))
 
 
+@kernel
+def box_of(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Least and greatest coordinates (2,) of points (n, 2), those that are NaN left out."""
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
+    for n in range(len(points)):
+        for c in range(2):
+            low[c], high[c] = min(low[c], points[n, c]), max(high[c], points[n, c])
+    return low, high
+
+
 def least_blank(net: Net, trimmed: Trimmed) -> tuple[float, float]:
     """Length and width, mm, of the least rectangle along the yarns that the ply can be cut from."""
-    if not trimmed.kind.any():
+    low, high = box_of(trimmed.at.reshape(-1, 2))
+    if not low[0] <= high[0]:
         return 0.0, 0.0
-    ends = [(np.nanmin(x), np.nanmax(x)) for x in trimmed.at.reshape(-1, 2).T]  # NaN where bare
-    low, high = np.array(ends).T
     if net.reach is not None:
         low, high = np.maximum(low, np.negative(net.reach)), np.minimum(high, net.reach)
     return float(high[0] - low[0]), float(high[1] - low[1])
