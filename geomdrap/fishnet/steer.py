@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.errors import DrapeError
+from geomdrap.fishnet.grid import STRAIN
 from geomdrap.fishnet.guide import Curve, crossing, curve_on, turns_along
-from geomdrap.fishnet.place import side_between
 from geomdrap.fishnet.seed import Seed, heading_frame, plant
 from geomdrap.fishnet.shift import Shift
 
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     Points = Sequence[Sequence[float]] | np.ndarray | None
 
-HALF_AXES = ((1, 0), (0, 1), (-1, 0), (0, -1))
 LEAST, MOST = 20.0, 160.0  # degrees at which two guides may cross
 
 
@@ -120,10 +119,10 @@ def generator_turns(
     if not any(rates) and not guides:
         return np.zeros((4, 1))
     turns = np.zeros((4, max(grid.face.shape)))
-    for a, (di, dj) in enumerate(HALF_AXES):
-        sense, curve = 1 if a < 2 else -1, curves[a % 2]
-        count = ((grid.face.shape[0] - 1 - i0, grid.face.shape[1] - 1 - j0, i0, j0))[a]
-        sides = np.array([side_between(grid, i0 + n * di, j0 + n * dj, di, dj) for n in range(count)])
+    along, across = grid.sides_u, grid.sides_v * (1.0 + grid.node[i0, :-1, STRAIN])
+    half_axes = (along[i0:], across[j0:], along[:i0][::-1], across[:j0][::-1])
+    for a, sides in enumerate(half_axes):
+        sense, curve, count = 1 if a < 2 else -1, curves[a % 2], len(sides)
         if curve is not None:
             name = f"the {'warp' if a % 2 == 0 else 'weft'} guide"
             turns[a, :count] = turns_along(mesh, curve, int(start.starts[a]), start.places[a], sides, sense, name)
