@@ -25,3 +25,7 @@ class EffectError(GeomdrapError):
 
 class SweepError(GeomdrapError):
     """The cases of a sweep cannot be read, or cannot be run where they should."""
+
+
+class FormingError(GeomdrapError):
+    """A material, a mesh or a run of the mechanical model is not as it must be, or the run did not end well."""

@@ -22,7 +22,7 @@ ENOUGH = 1e-7  # of the side: found
 @njit
 def miss_at(row, link, frames, face, x, y, turn, length, target):
     """Distance from a target at which the line of one heading ends."""
-    _, f, ex, ey, dx, dy = shoot(row, link, face, x, y, np.cos(turn), np.sin(turn), length)
+    _, f, ex, ey, dx, dy, _, _ = shoot(row, link, face, x, y, np.cos(turn), np.sin(turn), length)
     x, y = ex + length * dx, ey + length * dy
     end = frames[f, :3] + x * frames[f, 3:6] + y * frames[f, 6:]
     return np.sqrt(((end - target) ** 2).sum())

@@ -88,6 +88,13 @@ def test_the_list_of_outputs_on_the_command_line_is_the_list_of_formats() -> Non
     assert tuple(OUTPUTS) == OFFERED
 
 
+def test_what_is_written_by_default_is_the_same_on_the_command_line_and_in_python() -> None:
+    from geomdrap.cli.options import USUAL as OFFERED
+    from geomdrap.export.outputs import USUAL
+
+    assert USUAL == OFFERED
+
+
 @pytest.mark.parametrize("name", [output.file for outputs in OUTPUTS.values() for output in outputs])
 def test_the_readme_names_every_result_file(name: str) -> None:
     assert name in README.read_text(encoding="utf-8")

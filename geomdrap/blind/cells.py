@@ -23,13 +23,12 @@ def grow(
     holds: Callable[[Array], NDArray[np.bool_]],
     axes: tuple[Array, Array],
     sides: tuple[Array, Array],
-    slip: float = 0.0,
 ) -> Array:
     """Fill quadrants with cells; plan points (q, m + 1, m + 1, 2), NaN where the ply does not get.
 
     axes: plan points (q, m + 1, 2) along the warp and weft half-axes of each quadrant.
     sides: warp sides (q, m, m + 1), weft sides (q, m + 1, m): lengths in mm of the side that ends in node
-    (i + 1, j), and in (i, j + 1). slip: weft sides grow as 1/cos(γ)^slip, γ of the cell itself.
+    (i + 1, j), and in (i, j + 1).
     """
     q, m = axes[0].shape[0], axes[0].shape[1] - 1
     plan = np.full((q, m + 1, m + 1, 2), np.nan)
@@ -44,7 +43,7 @@ def grow(
         i, j = i[at], j[at]
         corner, left, below = plan[quadrant, i - 1, j - 1], plan[quadrant, i - 1, j], plan[quadrant, i, j - 1]
         warp, weft = sides[0][quadrant, i - 1, j], sides[1][quadrant, i, j - 1]
-        found = _fourth(sheet, corner, left, below, warp, weft, slip)
+        found = _fourth(sheet, corner, left, below, warp, weft)
         found[~holds(found)] = np.nan
         plan[quadrant, i, j] = found
     return plan
@@ -56,19 +55,14 @@ def _until_it_leaves(axis: Array, holds: Callable[[Array], NDArray[np.bool_]]) -
     return np.where(inside[..., None], axis, np.nan)
 
 
-def _fourth(
-    sheet: Sheet, corner: Array, left: Array, below: Array, warp: Array, weft: Array, slip: float
-) -> Array:
+def _fourth(sheet: Sheet, corner: Array, left: Array, below: Array, warp: Array, weft: Array) -> Array:
     """Newton for the fourth corners C (n, 2): |C − left| = warp side, |C − below| = weft side."""
     a, b, d = (sheet(plan)[0] for plan in (corner, left, below))
     xy = left + below - corner
-    grown = weft
     for _ in range(ITERATIONS):
         p, px, py = sheet(xy)
         from_left, from_below = p - b, p - d
-        if slip:
-            grown = weft / np.sqrt(1.0 - _sine(d - a, b - a, from_left, from_below) ** 2) ** slip
-        gaps = (np.sum(from_left**2, 1) - warp**2, np.sum(from_below**2, 1) - grown**2)
+        gaps = (np.sum(from_left**2, 1) - warp**2, np.sum(from_below**2, 1) - weft**2)
         rows = np.stack([from_left, from_below], axis=1)
         by_x, by_y = (np.einsum("nrc,nc->nr", rows, t) for t in (px, py))
         step = solve2(by_x, by_y, 0.5 * np.stack(gaps, axis=1))
@@ -77,7 +71,7 @@ def _fourth(
             break
     p = sheet(xy)[0]
     good = np.abs(np.linalg.norm(p - b, axis=1) - warp) < 1e-6 * warp
-    good &= np.abs(np.linalg.norm(p - d, axis=1) - grown) < 1e-4 * warp
+    good &= np.abs(np.linalg.norm(p - d, axis=1) - weft) < 1e-6 * weft
     good &= _sine(d - a, b - a, p - b, p - d) ** 2 < 1.0 - SMALLEST_SINE**2
     good &= np.sum((p - a) * (0.5 * (b + d) - a), axis=1) > 0.0  # not folded back onto the first corner
     return np.where(good[:, None], xy, np.nan)

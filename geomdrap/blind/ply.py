@@ -10,11 +10,14 @@ from geomdrap.blind.cells import grow
 from geomdrap.blind.closing import closed
 from geomdrap.blind.lines import generators
 from geomdrap.blind.recipe import Recipe
+from geomdrap.blind.shear import node_shear
 from geomdrap.blind.sheet import Sheet, bare, normals, parallel
 from geomdrap.blind.terms import Array
 from geomdrap.blind.tools import Tool
 from geomdrap.errors import GeomdrapError
 
+AGREE_MM, AGREE_DEG = 0.3, 0.6  # between nets of two finenesses: the finer one errs by a third of it
+CONTINUED = 1.3  # of the tool's size: how far yarns that slip are followed beyond its rim
 QUADRANTS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
 
 
@@ -39,16 +42,44 @@ def lay(tool: Tool, recipe: Recipe, side: float) -> Ply:
     if not tool.holds(start):
         raise GeomdrapError(f"the seed ({start[0]:g}, {start[1]:g}) is not on the blind part {tool.name}")
     sheet = _sheet(tool, recipe)
-    m = int(np.ceil(1.6 * sum(tool.half) / side))
-    axes = _axes(sheet, recipe, side, m)
-    quads = grow(sheet, tool.holds, _in_quadrants(axes), _sides(recipe, side, m), recipe.slip)
-    plan = _unfolded(quads)
+    plan = _slid(tool, sheet, recipe, side) if recipe.slip else _pinned(tool, sheet, recipe, side)
+    m = len(plan) // 2
     ply = _ply(sheet, side * np.arange(-m, m + 1.0), plan)
     if not recipe.relaxed:
         return ply
     from geomdrap.blind.relax import relaxed
 
     return _ply(sheet, ply.u, relaxed(sheet, ply.plan, recipe, side))
+
+
+def _pinned(tool: Tool, sheet: Sheet, recipe: Recipe, side: float) -> Array:
+    """Plan points (n, n, 2) of the geometric net, with crossings that do not slip."""
+    m = int(np.ceil(1.6 * sum(tool.half) / side))
+    axes = _axes(sheet, recipe, side, m)
+    return _unfolded(grow(sheet, tool.holds, _in_quadrants(axes), _sides(recipe, side, m)))
+
+
+def _slid(tool: Tool, sheet: Sheet, recipe: Recipe, side: float) -> Array:
+    """Plan points (n, n, 2) of the net whose crossings slip, where it is smooth enough for nodes ``side`` apart.
+
+    Behind a hump yarns that keep their distance meet at an angle. What nets of two finenesses do not agree on is
+    left out: it has such a kink in it.
+    """
+    from geomdrap.blind.sliding import grow_sliding
+
+    m = int(np.ceil(0.8 * sum(tool.half) / side))
+    plans = []
+    for size, count in ((side, 2 * m), (2.0 * side, m)):
+        axes = _in_quadrants(_axes(sheet, recipe, size, count))
+        sides = _sides(recipe, size, count)
+        plans.append(_unfolded(grow_sliding(sheet, lambda xy: tool.holds(xy / CONTINUED), axes, sides, recipe.slip)))
+    fine, coarse = (_ply(sheet, np.zeros(0), plan).points for plan in plans)
+    apart = np.linalg.norm(fine[::2, ::2] - coarse, axis=2)
+    turned = np.abs(node_shear(fine)[::2, ::2] - node_shear(coarse))
+    plan = plans[0]
+    plan[::2, ::2][~((apart < AGREE_MM) & (turned < AGREE_DEG))] = np.nan
+    plan[~tool.holds(plan)] = np.nan
+    return plan
 
 
 def warp_direction(tangent_x: Array, normal: Array, angle: float) -> Array:

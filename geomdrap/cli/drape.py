@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
+from geomdrap.cli.elements import fe_mesh_of, ply_on
+from geomdrap.cli.lazy import COMMAND
 from geomdrap.cli.options import (
     cloth_options,
     effect_options,
+    element_options,
     folder_option,
     json_option,
     outputs_option,
@@ -20,7 +23,6 @@ from geomdrap.cli.options import (
     reading_options,
     seed_options,
 )
-from geomdrap.cli.values import Number
 
 if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
@@ -54,10 +56,13 @@ THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
     metavar="DEG,DEG,...",
     help="A stack instead of one ply: angles from --angle, the tool's side first, each ply draped on those below it.",
 )
+@element_options
 @click.option(
-    "--ply-thickness",
-    type=Number("MM", above=0.0),
-    help="Thickness of a flat ply of the stack, which grows where it shears.  [default: 0.25]",
+    "--paper",
+    type=click.Choice(["A4", "A3"], case_sensitive=False),
+    default="A4",
+    show_default=True,
+    help="Paper of the pages of cut.pdf, which --outputs pdf writes in true scale.",
 )
 @click.option("--strict", is_flag=True, help="Exit with code 1 if less than 99.5 % of the part is covered.")
 @json_option
@@ -66,7 +71,10 @@ def drape(
     folder: Path,
     outputs: tuple[str, ...],
     plies: str | None,
+    onto: Path | None,
+    fe_axis: tuple[float, float, float] | None,
     ply_thickness: float | None,
+    paper: str,
     strict: bool,
     as_json: bool,
     quiet: bool,
@@ -85,28 +93,36 @@ def drape(
       geomdrap drape hood.stl --warp-guide spine.csv
       geomdrap drape hood.stl --plies 0,45,-45,90 --ply-thickness 0.3 -o laminate
       geomdrap drape hood.stl --effect slip:coefficient=0.6 --effect thickness:offset=1.5
+      geomdrap drape hood.stl --angle 45 --outputs cut,pdf --paper A3
+      geomdrap drape hood.stl --angle 45 --onto hood_fe.inp --ply-thickness 0.3
     """
     from geomdrap.cli.messages import print_json, say
     from geomdrap.cli.progress import Progress, announce_compilation
     from geomdrap.cli.summary import summary
-    from geomdrap.export.outputs import write_all
+    from geomdrap.export.outputs import Extras, write_all
     from geomdrap.export.report_json import as_dict, is_incomplete
 
     _check_folder(folder, outputs)
-    if click.get_current_context().get_parameter_source("angle") == ParameterSource.COMMANDLINE:
+    context = click.get_current_context()
+    if context.get_parameter_source("angle") == ParameterSource.COMMANDLINE:
         _refuse_guides(asked, "--angle")
     if plies is not None:
         from geomdrap.cli.plies import drape_plies
 
         _refuse_guides(asked, "--plies")
-        return drape_plies(plies, ply_thickness or THICKNESS, folder, outputs, strict, as_json, quiet, **asked)
-    if ply_thickness is not None:
-        raise click.UsageError("--ply-thickness needs --plies", click.get_current_context())
+        if onto is not None or fe_axis is not None:
+            raise click.UsageError("--onto and --fe-axis take one ply: leave --plies out", context)
+        extras = Extras(context.meta.get(COMMAND, ""), None, ply_thickness or THICKNESS, paper)
+        return drape_plies(plies, extras, folder, outputs, strict, as_json, quiet, **asked)
+    mesh, outputs = fe_mesh_of(onto, outputs)
     with Progress(quiet) as progress:
         result = compute(progress, lambda: announce_compilation(quiet), **asked)
         progress.step("Writing")
-        files = write_all(result, folder, outputs, progress.share)
-    say(result.warnings, (*result.net.notes, *_left_over(folder, files)), quiet)
+        command = click.get_current_context().meta.get(COMMAND, "")
+        elements = ply_on(result, mesh, fe_axis, outputs)
+        files = write_all(result, folder, outputs, progress.share, Extras(command, elements, ply_thickness, paper))
+    without = elements.notes() if elements is not None else []
+    say((*result.warnings, *without), (*result.net.notes, *_left_over(folder, files)), quiet)
     if as_json:
         print_json(as_dict(result, files))
     elif not quiet:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping
 from importlib import import_module
 from typing import Any
@@ -9,6 +10,9 @@ from typing import Any
 import click
 
 from geomdrap.cli.failures import exit_code_of, hang_up
+
+COMMAND = "geomdrap.command"
+"""Key under which a context's ``meta`` holds the command line, as a shell would take it."""
 
 
 class LazyGroup(click.Group):
@@ -41,6 +45,11 @@ class LazyGroup(click.Group):
             known = ", ".join(self.summaries)
             raise click.UsageError(f"there is no command '{args[0]}'; the commands are {known}", ctx)
         return super().resolve_command(ctx, args)
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Read the arguments, and keep them as they were typed for reports that show the command."""
+        ctx.meta[COMMAND] = shlex.join(["geomdrap", *args])
+        return super().parse_args(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the table of commands."""

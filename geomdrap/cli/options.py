@@ -10,7 +10,9 @@ import click
 
 from geomdrap.cli.values import Direction, Names, Number, Origin, Size
 
-OUTPUTS = ("json", "csv", "vtu", "png", "dxf", "svg")  # the keys of export.outputs.OUTPUTS; a test compares
+USUAL = ("json", "csv", "vtu", "png", "dxf", "svg", "html")  # export.outputs.USUAL; a test compares
+FE_OUTPUTS = ("abaqus", "nastran", "optistruct", "radioss", "acp")
+OUTPUTS = (*USUAL, "cut", "pdf", *FE_OUTPUTS)  # the keys of export.outputs.OUTPUTS; a test compares
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -160,10 +162,37 @@ def outputs_option(function: F) -> F:
         "--outputs",
         type=Names(OUTPUTS),
         metavar="name,name,...",
-        default=",".join(OUTPUTS),
+        default=",".join(USUAL),
         show_default=True,
-        help="Which result files to write; none writes none.",
+        help=f"Which result files to write; none writes none. For the cutting table: cut, pdf. "
+        f"For finite elements: {', '.join(FE_OUTPUTS)}.",
     )(function)
+
+
+def element_options(function: F) -> F:
+    """Add how the ply is handed over to finite elements: --onto, --fe-axis, --ply-thickness."""
+    for option in (
+        click.option(
+            "--ply-thickness",
+            type=Number("MM", above=0.0),
+            help="Thickness of the flat fabric, for decks with thicknesses.  [default: factors only]",
+        ),
+        click.option(
+            "--fe-axis",
+            type=Direction(),
+            metavar="x,y,z",
+            help="Direction that, laid into an element, is 0° of its ply angles.  [default: the element's own]",
+        ),
+        click.option(
+            "--onto",
+            type=_path(),
+            metavar="FE_MESH",
+            help="Finite element mesh (.inp, .bdf, .nas, .dat, .fem, .rad, in mm) that the ply is mapped onto; its "
+            "format, and acp, are added to --outputs where no format is named.",
+        ),
+    ):
+        function = option(function)
+    return function
 
 
 def json_option(function: F) -> F:

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
+    from geomdrap.export.outputs import Extras
     from geomdrap.sweep import Ply
 
 
 def drape_plies(
-    plies: str, thickness: float, folder: Path, outputs: tuple[str, ...], strict: bool, as_json: bool, quiet: bool,
+    plies: str, extras: Extras, folder: Path, outputs: tuple[str, ...], strict: bool, as_json: bool, quiet: bool,
     **asked: Any,
 ) -> int:  # fmt: skip
     """Drape the plies of a stack, write and print them; the exit code."""
@@ -23,7 +24,8 @@ def drape_plies(
     from geomdrap.export.report_json import is_incomplete
     from geomdrap.sweep import lay_plies, parse_plies
 
-    angles = parse_plies(plies)
+    angles, thickness = parse_plies(plies), extras.ply_thickness
+    assert thickness is not None
     with Progress(quiet) as progress:
         surface, laid = _read(progress, lambda: announce_compilation(quiet), **asked)
         progress.step("Draping plies")
@@ -31,7 +33,7 @@ def drape_plies(
             surface, angles, thickness, **laid, on_ply=lambda ply: progress.share(ply.number / len(angles))
         )
         progress.step("Writing")
-        files = write_plies(stack, thickness, folder, outputs, progress.share)
+        files = write_plies(stack, extras, folder, outputs, progress.share)
     warnings = [f"ply {ply.number}: {text}" for ply in stack for text in ply.drape.warnings]
     say(warnings, stack[0].drape.net.notes, quiet)
     if as_json:

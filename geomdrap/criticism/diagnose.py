@@ -143,7 +143,8 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         model = refit(experiment, judge_of(experiment, rows).whiten(scatter), model)
     left = left_over(experiment, model, scatter)
     alike = rivals(rounds[len(names) - 1].evidence) if names else ()
-    if left.structured and _locks(experiment, rounds[0]):
+    # a plateau that the model found does not foretell is no matter of chance: nothing else makes one
+    if _locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):
         names, alike = [LOCKING], (LOCKING,)
         model, scatter = rounds[0].trial(LOCKING)
         left = left_over(experiment, model, scatter)
@@ -167,19 +168,25 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
     )
 
 
-def shear_stops(experiment: Experiment, base: Fitted) -> Plateau | None:
-    """The plateau of the shear, if it was measured and has one."""
+def shear_stops(experiment: Experiment, model: Fitted, scatter: Scatter) -> Plateau | None:
+    """The plateau of the shear where a model foretells more, if shear was measured and has one."""
     if "shear" not in experiment.channels:
         return None
     own = experiment.channel_of() == experiment.channels.index("shear")
-    measured, predicted = experiment.measured[own], (experiment.measured - base.fit.residual)[own]
-    return plateau(measured, predicted, float(np.median(experiment.noise[own])))
+    measured, predicted = experiment.measured[own], (experiment.measured - model.fit.residual)[own]
+    noise = float(np.hypot(np.median(experiment.noise[own]), scatter.shear))
+    return plateau(measured, predicted, noise)
 
 
 def _locks(experiment: Experiment, first: Round) -> bool:
     """Whether the shear stops at an angle, and locking explains a good share of the misfit."""
     possible = any(e.name == LOCKING and e.p_family < FAMILY and e.share >= LEAST_SHARE for e in first.evidence)
-    return possible and shear_stops(experiment, first.base) is not None
+    return possible and shear_stops(experiment, first.base, _least_scatter(first)) is not None
+
+
+def _least_scatter(of: Round) -> Scatter:
+    """The scatter that the likeliest of the models of a round leaves, which is the smallest."""
+    return min(of.scatter, key=lambda s: s.size)
 
 
 def _failures(experiment: Experiment, rounds: Sequence[Round]) -> tuple[str, ...]:

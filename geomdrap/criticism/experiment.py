@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,7 +18,8 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 CHANNELS = ("along", "across", "normal", "shear", "warp", "weft")
-KEPT = 12  # surfaces with effects on them that are kept
+KEPT = 12  # surfaces with effects on them that are kept, and corrections of coarse nets
+TOP = 97.0  # percentile of the shear that counts as the largest
 FINE, COARSE = 7000, 900  # nodes of the net, for what costs milliseconds and for what costs seconds
 
 
@@ -42,7 +44,8 @@ class Experiment:
     ``at`` (n, 2) mm fabric coordinates of the points; ``channels`` (c,) names of ``CHANNELS``; ``mask`` (n, c) which
     were measured; ``noise`` (m,) their standard deviations, mm or degrees; ``measured`` (m,); vectors hold the true
     entries of ``mask``, channel by channel. ``refused``: why a drape with an effect could not be made at some of the
-    values tried, by its name. ``frames`` (n, 3, 3): along the warp, across it, and the normal.
+    values tried, by its name. ``frames`` (n, 3, 3): along the warp, across it, and the normal. What is costly is
+    kept: ``surfaces`` with effects on them, and the ``coarseness`` of nets.
     """
 
     surface: Surface
@@ -57,6 +60,7 @@ class Experiment:
     pitches: tuple[float, float]
     surfaces: dict[str, Surface] = field(default_factory=dict)
     refused: dict[str, str] = field(default_factory=dict)
+    coarseness: dict[str, np.ndarray] = field(default_factory=dict)
 
     def predict(self, effects: Sequence[Effect] = ()) -> np.ndarray:
         """The model's values (m,), NaN where it has none."""
@@ -64,8 +68,20 @@ class Experiment:
             return self._flat(self.draped(effects))
         # what is costly is done on a coarse net, with what the coarseness changes in the same net without it
         stiff = [e for e in effects if not e.costly]
-        fine, coarse = (self._flat(self.draped(stiff, pitch)) for pitch in self.pitches)
-        return self._flat(self.draped(effects, self.pitches[1])) + (fine - coarse)
+        return self._flat(self.draped(effects, self.pitches[1])) + self._coarseness(stiff)
+
+    @cached_property
+    def top_shear(self) -> float:
+        """Nearly the largest shear (degrees, absolute) of the net without effects."""
+        return float(np.nanpercentile(np.abs(self.draped((), self.pitches[1]).cell_shear), TOP))
+
+    def _coarseness(self, effects: Sequence[Effect]) -> np.ndarray:
+        """What the fine net gives more than the coarse one (m,)."""
+        key = "+".join(map(repr_of, in_order(effects)))
+        if key not in self.coarseness:
+            fine, coarse = (self._flat(self.draped(effects, pitch)) for pitch in self.pitches)
+            keep(self.coarseness, key, fine - coarse)
+        return self.coarseness[key]
 
     def draped(self, effects: Sequence[Effect] = (), pitch: float | None = None) -> Net:
         """The model's net with effects, at the model's own pitch (mm) unless another is given."""
@@ -82,11 +98,9 @@ class Experiment:
         others = [e for e in effects if e.stage != "surface"]
         if not acting:
             return self.surface, others
-        key = repr(sorted((e.name, sorted(e.values.items())) for e in acting))
+        key = "+".join(map(repr_of, in_order(acting)))
         if key not in self.surfaces:
-            if len(self.surfaces) >= KEPT:
-                self.surfaces.pop(next(iter(self.surfaces)))
-            self.surfaces[key] = surface_with(in_order(acting), self.surface)
+            keep(self.surfaces, key, surface_with(in_order(acting), self.surface))
         return self.surfaces[key], others
 
     def _flat(self, net: Net) -> np.ndarray:
@@ -112,6 +126,18 @@ class Experiment:
     def point_of(self) -> np.ndarray:
         """Number of the point of each value (m,)."""
         return np.nonzero(self.mask.T)[1]
+
+
+def repr_of(effect: Effect) -> str:
+    """An effect with all digits of its values."""
+    return f"{effect.name}{sorted(effect.values.items())}"
+
+
+def keep(kept: dict[str, Any], key: str, value: object) -> None:
+    """Keep a value, and no more than ``KEPT`` of them: the oldest goes."""
+    if len(kept) >= KEPT:
+        kept.pop(next(iter(kept)))
+    kept[key] = value
 
 
 def flatten(table: np.ndarray, mask: np.ndarray) -> np.ndarray:

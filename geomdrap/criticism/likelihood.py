@@ -12,7 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from geomdrap.criticism.scatter import Smoothness, scatter_covariance, shifts
+from geomdrap.criticism.scatter import DEG, Smoothness, radial, scatter_covariance, shifts
 
 RATIO = 1.4  # between neighbouring correlation lengths that are tried
 SIZES = (0.0, 0.3, 0.5, 0.8, 1.3, 2.0, 3.2, 5.0, 8.0, 13.0, 20.0)  # τ over the positions' noise
@@ -27,6 +27,12 @@ class Scatter:
     size: float = 0.0
     length: float = 1.0
     kind: Smoothness = Smoothness.SMOOTH
+
+    @property
+    def shear(self) -> float:
+        """Standard deviation of the shear that it makes, degrees."""
+        slope = float(radial(np.zeros(1), self.length, self.kind)[1][0])  # variance of a slope of a shift of 1 mm
+        return DEG * self.size * float(np.sqrt(2.0 * slope))
 
 
 NO_SCATTER = Scatter()
@@ -149,6 +155,9 @@ class Judge:
                 (length + 1, size, kind),
                 (length - 1, size, kind),
                 (length, size, other),
+                # a larger scatter over a greater length shears as much: the likeliest lie along a slanting ridge
+                (length + 1, size + 1, kind),
+                (length - 1, size - 1, kind),
             ):
                 if not (0 <= new_length < len(self.lengths) and 0 <= new_size < len(SIZES)):
                     continue

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from geomdrap.criticism.fit import STEPS, Fit, fit, take_slopes
 from geomdrap.criticism.likelihood import square_beside
+from geomdrap.criticism.start import LEAST_GAIN, Glance, glance, start_values
 from geomdrap.effects import make
 from geomdrap.errors import GeomdrapError
 
@@ -22,20 +22,9 @@ if TYPE_CHECKING:
 Whiten = Callable[[np.ndarray], np.ndarray]
 
 STEP = 0.1  # of a parameter's typical size: the differences with which slopes are taken
-GROWING = (
-    0.3,
-    1.0,
-    3.0,
-    8.0,
-)  # times the typical size of a parameter that grows from 0: where the search looks first
-FALLING = (0.3, 0.6, 0.9, 1.2, 1.5)  # of the way from a parameter's greatest value to its typical one, likewise
-SHAPES = (0.05, 0.2, 0.4, 0.6)  # of the range of a parameter that does nothing alone
 FEW_STEPS = 7  # of a fit whose every drape is costly
-HALVINGS = 3  # of the gaps between probes
-SAME = 3.0  # of chi-square: probes this close do equally well
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
 HOPELESS = 0.5  # of the way from the best model back to the base
-NOTHING = 1e-6  # of the noise: less is no signature
 
 
 @dataclass(frozen=True)
@@ -136,18 +125,29 @@ def fit_placement(experiment: Experiment, whiten: Whiten, start: np.ndarray | No
     )
 
 
-def add_effect(experiment: Experiment, whiten: Whiten, base: Fitted, effect: str, least: float = -math.inf) -> Fitted:
+def add_effect(
+    experiment: Experiment,
+    whiten: Whiten,
+    base: Fitted,
+    effect: str,
+    least: float = -math.inf,
+    likely: Whiten | None = None,
+) -> Fitted:
     """The base model with one effect more, fitted together with everything in the base.
 
-    ``least`` is the chi-square of the best model known: a costly effect that promises to stay far above it is not
-    fitted to the end, and where nothing is left to explain it is tried at its typical size only.
+    ``least`` is the chi-square of the best model known: an effect that takes long and promises to stay far above it
+    is not fitted to the end. ``likely`` whitens with the likeliest scatter of the base: what explains nothing beside
+    that is not fitted either.
     """
     model = base.model.with_effect(effect)
     predict = predictor(experiment, model)
-    if make(effect).costly and is_noise(least, len(experiment.measured)):
-        start = np.append(base.values, [p.typical for p in make(effect).parameters])
-    else:
-        start = _start(experiment, predict, whiten, base, effect)
+    kind = make(effect)
+    slow = kind.costly or kind.stage == "surface"
+    if slow and likely is not None:
+        seen = glance(experiment, predict, whiten, likely, base, effect)
+        if seen.gain < LEAST_GAIN or (kind.costly and _hopeless(whiten, base, seen.after, least)):
+            return _not_fitted(model, base, seen)
+    start = start_values(experiment, predict, whiten, base, effect)
     low, high = model.bounds
     # what the base already has keeps its slopes; the fit mends them where they mislead it
     own = slice(len(base.values), None)
@@ -155,15 +155,24 @@ def add_effect(experiment: Experiment, whiten: Whiten, base: Fitted, effect: str
     slopes[:, : len(base.values)] = base.fit.slopes
     residual = experiment.measured - predict(start)
     residual = np.where(np.isnan(residual), base.fit.residual, residual)
-    enough = least if make(effect).costly else -math.inf
-    if not _promises(whiten, base, residual, slopes, enough):
+    if not _promises(whiten, base, residual, slopes, least if kind.costly else -math.inf):
         chi2 = float((whiten(np.nan_to_num(residual)) ** 2).sum())
         if chi2 < base.fit.chi2:
             return Fitted(model, Fit(start, residual, slopes, chi2))
-        neutral = np.append(base.values, [p.neutral for p in make(effect).parameters])
+        neutral = np.append(base.values, [p.neutral for p in kind.parameters])
         return Fitted(model, Fit(neutral, base.fit.residual, slopes, base.fit.chi2))
-    most = FEW_STEPS if make(effect).costly else STEPS
+    most = FEW_STEPS if kind.costly else STEPS
     return Fitted(model, fit(predict, experiment.measured, whiten, start, model.steps, low, high, slopes, most))
+
+
+def _not_fitted(model: Model, base: Fitted, seen: Glance) -> Fitted:
+    """The base with an effect that does nothing, and the slopes that one look at it shows."""
+    own = [p for name, p in model.parameters if name == model.effects[-1]]
+    neutral = np.array([p.neutral for p in own])
+    away = seen.values - neutral
+    slopes = np.column_stack([seen.signature / a if a else np.zeros(len(seen.signature)) for a in away])
+    fit = Fit(np.append(base.values, neutral), base.fit.residual, np.hstack([base.fit.slopes, slopes]), base.fit.chi2)
+    return Fitted(model, fit)
 
 
 def is_noise(chi2: float, values: int) -> bool:
@@ -178,9 +187,15 @@ def _promises(whiten: Whiten, base: Fitted, residual: np.ndarray, slopes: np.nda
     """
     before = square_beside(whiten(np.nan_to_num(base.fit.residual)), whiten(base.fit.slopes))
     after = square_beside(whiten(np.nan_to_num(residual)), whiten(slopes))
-    if after - least > HOPELESS * (before - least):
+    if _hopeless(whiten, base, after, least):
         return False
     return before - after > max(PROMISE * max(before - len(residual), 0.0), LEAST_PROMISE)
+
+
+def _hopeless(whiten: Whiten, base: Fitted, after: float, least: float) -> bool:
+    """Whether a chi-square foreseen by slopes stays far above the best known."""
+    before = square_beside(whiten(np.nan_to_num(base.fit.residual)), whiten(base.fit.slopes))
+    return after - least > HOPELESS * (before - least)
 
 
 def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
@@ -189,133 +204,6 @@ def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     low, high = model.bounds
     predict = predictor(experiment, model)
     return Fitted(model, fit(predict, experiment.measured, whiten, old.values, model.steps, low, high))
-
-
-def _start(
-    experiment: Experiment,
-    predict: Callable[[np.ndarray], np.ndarray],
-    whiten: Whiten,
-    base: Fitted,
-    effect: str,
-) -> np.ndarray:
-    """Values to begin with: the best of a few probes of the new effect."""
-    own = make(effect).parameters
-    p = len(base.values)
-    neutral = np.array([q.neutral for q in own])
-    residual = np.nan_to_num(base.fit.residual)
-    there = experiment.measured - base.fit.residual
-    shifts = whiten(base.fit.slopes)
-
-    def signature(values: np.ndarray) -> np.ndarray:
-        return np.nan_to_num(predict(np.append(base.values, values)) - there)
-
-    alone = []
-    for k, q in enumerate(own):
-        values = neutral.copy()
-        values[k] = q.typical
-        alone.append(signature(values))
-    sizes = [float(np.abs(whiten(s)).max()) for s in alone]
-    acting = [k for k in range(len(own)) if sizes[k] > NOTHING]
-    if len(acting) == len(own) and (len(own) > 1 or own[0].low < own[0].neutral < own[0].high):
-        # both signs, a slope at nothing: the linear fit is the start
-        slopes = np.column_stack([s / (q.typical - q.neutral) for s, q in zip(alone, own, strict=True)])
-        step = np.linalg.lstsq(np.column_stack([shifts, whiten(slopes)]), whiten(residual), rcond=1e-9)[0]
-        values = _within(neutral + step[p:], own)
-        return np.append(base.values + step[:p], values)
-
-    def misfit(values: np.ndarray) -> float:
-        return square_beside(whiten(residual - signature(values)), shifts)
-
-    if len(own) == 1:
-        now = square_beside(whiten(residual), shifts)
-        halvings = 1 if make(effect).costly else HALVINGS
-        best = np.array([_narrowed(lambda x: misfit(np.array([x])), _probes(own[0]), now, halvings)])
-    else:
-        best = min(
-            (_scaled(shape, own, acting, signature, whiten, residual, shifts) for shape in _shapes(own, acting)),
-            key=misfit,
-        )
-    return _best_place(experiment, predict, whiten, base, best)
-
-
-def _best_place(
-    experiment: Experiment,
-    predict: Callable[[np.ndarray], np.ndarray],
-    whiten: Whiten,
-    base: Fitted,
-    best: np.ndarray,
-) -> np.ndarray:
-    """Values of the base to go with values ``best`` of a new effect: from its own, or from the placement as meant.
-
-    A base without the effect may have gone far astray to make up for it.
-    """
-    shifts = whiten(base.fit.slopes)
-    meant = base.values.copy()
-    meant[:3] = 0.0
-    starts = []
-    for values in (base.values, meant):
-        left = whiten(np.nan_to_num(experiment.measured - predict(np.append(values, best))))
-        step = np.linalg.lstsq(shifts, left, rcond=1e-9)[0]
-        starts.append((square_beside(left, shifts), np.append(values + step, best)))
-    return min(starts, key=lambda start: start[0])[1]
-
-
-def _narrowed(misfit: Callable[[float], float], probes: Sequence[float], now: float, halvings: int) -> float:
-    """The best of the probes; where none is better than ``now``, after halving the gaps beside the best.
-
-    Of probes that do equally well the last is taken: an effect that does nothing up to a threshold begins there.
-    """
-    known = {x: misfit(x) for x in probes}
-    for _ in range(halvings):
-        least = min(known.values())
-        if least < now - SAME:
-            break
-        best = max(x for x, value in known.items() if value <= least + SAME)
-        order = sorted(known)
-        k = order.index(best)
-        for a, b in ((k, k + 1), (k - 1, k)):
-            if a >= 0 and b < len(order):
-                middle = 0.5 * (order[a] + order[b])
-                known[middle] = misfit(middle)
-    return min(known, key=lambda x: known[x])
-
-
-def _probes(own: Parameter) -> list[float]:
-    """Values of a one-sided parameter where the search looks first."""
-    factors = GROWING if own.typical > own.neutral else FALLING
-    return sorted({_clip(own.neutral + f * (own.typical - own.neutral), own) for f in factors})
-
-
-def _shapes(own: Sequence[Parameter], acting: Sequence[int]) -> list[np.ndarray]:
-    """Values of the parameters that do nothing alone, over their ranges; the others at their typical sizes."""
-    each = [[q.typical] if k in acting else [q.low + f * (q.high - q.low) for f in SHAPES] for k, q in enumerate(own)]
-    return [np.array(values) for values in product(*each)]
-
-
-def _scaled(
-    shape: np.ndarray,
-    own: Sequence[Parameter],
-    acting: Sequence[int],
-    signature: Callable[[np.ndarray], np.ndarray],
-    whiten: Whiten,
-    residual: np.ndarray,
-    shifts: np.ndarray,
-) -> np.ndarray:
-    """The values with the acting ones as large as the residual wants them, were their signature linear."""
-    column = whiten(signature(shape))
-    factor = float(np.linalg.lstsq(np.column_stack([shifts, column]), whiten(residual), rcond=1e-9)[0][-1])
-    out = shape.copy()
-    for k in acting:
-        out[k] = _clip(own[k].neutral + factor * (shape[k] - own[k].neutral), own[k])
-    return out
-
-
-def _within(values: np.ndarray, own: Sequence[Parameter]) -> np.ndarray:
-    return np.array([_clip(v, q) for v, q in zip(values, own, strict=True)])
-
-
-def _clip(value: float, q: Parameter) -> float:
-    return min(max(float(value), q.low), q.high)
 
 
 def slopes_at(experiment: Experiment, model: Model, values: np.ndarray) -> np.ndarray:

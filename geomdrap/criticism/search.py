@@ -11,7 +11,7 @@ from geomdrap.criticism.evidence import Evidence, among_all, chance
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.holdout import blocks_of, held_out_error
 from geomdrap.criticism.likelihood import Judge, Residuals, Scatter, deviations
-from geomdrap.criticism.model import Fitted, Whiten, add_effect, is_noise
+from geomdrap.criticism.model import Fitted, Whiten, add_effect
 from geomdrap.effects import make
 
 CLEAR = 3.0  # standard deviations from nothing
@@ -48,9 +48,10 @@ def try_effects(
     """Fit every effect on top of the base, and weigh what speaks for it. ``done`` is told each name."""
     trials, failed = [], []
     least = base.fit.chi2
+    likely = _likely(experiment, base)
     for name in sorted(names, key=lambda name: make(name).costly):
         done(name)
-        trial = add_effect(experiment, whiten, base, name, least)
+        trial = add_effect(experiment, whiten, base, name, least, likely)
         least = min(least, trial.fit.chi2)
         if _predicts(trial):
             trials.append(trial)
@@ -72,6 +73,15 @@ def try_effects(
     spreads = [deviations(judge.whiten(s)(r.slopes)) for s, r in zip(scatter[1:], linear[1:], strict=True)]
     evidence = _weigh(models, likelihood, squares, errors, spreads, floor)
     return Round(base, tuple(trials), evidence, tuple(scatter), rows, judge, errors[0], tuple(failed))
+
+
+def _likely(experiment: Experiment, base: Fitted) -> Whiten:
+    """Whitening (of what the base predicts) by its likeliest scatter."""
+    rows = np.isfinite(base.fit.residual)
+    judge = judge_of(experiment, rows)
+    scatter = judge.best_scatter([Residuals(base.fit.residual[rows], base.fit.slopes[rows])], [0])[0][0]
+    whiten = judge.whiten(scatter)
+    return lambda a: whiten(a[rows])
 
 
 def _predicts(model: Fitted) -> bool:
@@ -109,8 +119,7 @@ def _weigh(
     unknowns = [len(m.values) - len(base.values) + _shapes(m) for m in models[1:]]
     p_values = [chance(g, k) for g, k in zip(gains, unknowns, strict=True)]
     family = among_all(p_values)
-    misfit = squares[0] - floor
-    clear = not is_noise(squares[0], int(floor))  # else there is nothing to explain
+    misfit = max(squares[0] - floor, CLEAR * float(np.sqrt(2.0 * floor)))  # at least what noise may hide
     out = []
     for k, model in enumerate(models[1:]):
         out.append(
@@ -120,7 +129,7 @@ def _weigh(
                 unknowns=unknowns[k],
                 p_value=p_values[k],
                 p_family=float(family[k]),
-                share=min((squares[0] - squares[k + 1]) / misfit, 1.0) if clear else 0.0,
+                share=min((squares[0] - squares[k + 1]) / misfit, 1.0),
                 cv_ratio=errors[k + 1] / errors[0],
                 in_range=_in_range(model, spreads[k]),
             )
@@ -142,7 +151,10 @@ def _in_range(model: Fitted, sigma: np.ndarray) -> bool:
     own = model.parameters_of(model.model.effects[-1])
     values = [(p, float(model.values[k])) for p, k in own]
     at_bound = [v in (p.low, p.high) and v != p.neutral and not _natural(p, v) for p, v in values]
-    acts = any(abs(v - p.neutral) > CLEAR * sigma[k] for (p, v), (_, k) in zip(values, own, strict=True))
+    if getattr(make(model.model.effects[-1]), "acts_at_once", False):
+        acts = any(v != p.neutral for p, v in values)
+    else:
+        acts = any(abs(v - p.neutral) > CLEAR * sigma[k] for (p, v), (_, k) in zip(values, own, strict=True))
     return not any(at_bound) and acts
 
 

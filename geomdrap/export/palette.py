@@ -42,6 +42,13 @@ def continuous_table() -> NDArray[np.float32]:
     return np.asarray(colormaps[name](np.linspace(first, last, 256)))[:, :3].astype(np.float32)
 
 
+def diverging_table() -> NDArray[np.float32]:
+    """The map of signed shear as a table (256, 3), 0 to 1: blue, pale where there is none, red."""
+    from matplotlib import colormaps
+
+    return np.asarray(colormaps["RdYlBu_r"](np.linspace(0.02, 0.98, 256)))[:, :3].astype(np.float32)
+
+
 def top_of_scale(largest: float, limit: float) -> float:
     """End of the continuous scale, deg: a multiple of 5 that holds the largest shear.
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geomdrap import __version__
-from geomdrap.export.outputs import write_all
+from geomdrap.export.outputs import Extras, write_all
 from geomdrap.export.report_json import as_dict as drape_as_dict
 from geomdrap.export.report_json import as_text, is_incomplete, plain
 from geomdrap.export.whole import write_whole
@@ -20,7 +20,7 @@ FILE = "plies.json"
 
 
 def as_dict(
-    plies: Sequence[Ply], thickness: float, files: Mapping[int, Mapping[str, Path]] | None = None
+    plies: Sequence[Ply], thickness: float | None, files: Mapping[int, Mapping[str, Path]] | None = None
 ) -> dict[str, Any]:
     """The JSON object of a stack (schema ``geomdrap.plies/1``): that of each ply's drape, and what lies below it."""
     stack = [
@@ -47,12 +47,14 @@ def as_dict(
 
 def write_plies(
     plies: Sequence[Ply],
-    thickness: float,
+    extras: Extras,
     folder: Path,
     names: Iterable[str],
     progress: Callable[[float], None] = lambda _: None,
 ) -> dict[int, dict[str, Path]]:
     """Write the outputs ``names`` of every ply to ``folder/ply-NUMBER``, and plies.json; the files of each ply.
+
+    ``extras`` hold the thickness of a ply, and what some formats take.
 
     Raises `GeomdrapError` if a folder cannot be written.
     """
@@ -61,10 +63,10 @@ def write_plies(
         return {}
     files = {}
     for ply in plies:
-        files[ply.number] = write_all(ply.drape, folder / f"ply-{ply.number}", wanted)
+        files[ply.number] = write_all(ply.drape, folder / f"ply-{ply.number}", wanted, extras=extras)
         progress(ply.number / len(plies))
     named = {
         number: {key: Path(path.parent.name, path.name) for key, path in own.items()} for number, own in files.items()
     }
-    write_whole(folder / FILE, as_text(as_dict(plies, thickness, named)))
+    write_whole(folder / FILE, as_text(as_dict(plies, extras.ply_thickness, named)))
     return files

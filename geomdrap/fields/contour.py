@@ -79,27 +79,46 @@ def outlines(
     return [points[a:b] for a, b in pairwise(begin)]
 
 
+@kernel
 def signed_area(polygon: np.ndarray) -> float:
-    """Area of a closed polygon (k, 2), positive if counter-clockwise."""
-    ring = polygon - polygon.mean(axis=0)
-    x, y = ring.T
-    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+    """Area of a closed polygon (k, 2), positive if counter-clockwise; from its first point, for the digits' sake."""
+    total = 0.0
+    for a in range(1, len(polygon) - 1):
+        ux, uy = polygon[a, 0] - polygon[0, 0], polygon[a, 1] - polygon[0, 1]
+        vx, vy = polygon[a + 1, 0] - polygon[0, 0], polygon[a + 1, 1] - polygon[0, 1]
+        total += 0.5 * (ux * vy - uy * vx)
+    return total
 
 
+@kernel
 def clip_to_rectangle(polygon: np.ndarray, half: tuple[float, float]) -> np.ndarray:
     """The part of a closed polygon (k, 2) with |x| ≤ half[0] and |y| ≤ half[1] (Sutherland and Hodgman, 1974)."""
-    for axis in (0, 1):
+    for axis in range(2):
         for sign in (1.0, -1.0):
-            if len(polygon) == 0:
-                return polygon
-            over = sign * polygon[:, axis] - half[axis]
-            onward, over_next = np.roll(polygon, -1, axis=0), np.roll(over, -1)
-            crosses = (over > 0.0) != (over_next > 0.0)
-            share = np.where(crosses, over / np.where(crosses, over - over_next, 1.0), 0.0)
-            cut = polygon + share[:, None] * (onward - polygon)
-            keep = np.column_stack([over <= 0.0, crosses])
-            polygon = np.stack([polygon, cut], axis=1)[keep]
+            cut = np.empty((2 * len(polygon), 2))
+            count = 0
+            for a in range(len(polygon)):
+                b = a + 1 if a + 1 < len(polygon) else 0
+                over, over_next = sign * polygon[a, axis] - half[axis], sign * polygon[b, axis] - half[axis]
+                if over <= 0.0:
+                    cut[count] = polygon[a]
+                    count += 1
+                if (over > 0.0) != (over_next > 0.0):
+                    cut[count] = polygon[a] + over / (over - over_next) * (polygon[b] - polygon[a])
+                    count += 1
+            polygon = cut[:count]
     return polygon
+
+
+@kernel
+def shares_in_rectangle(triangles: np.ndarray, half: tuple[float, float]) -> np.ndarray:
+    """Share (m,) of the area of each triangle (m, 3, 2) with |x| ≤ half[0] and |y| ≤ half[1]; 0 where it has none."""
+    share = np.zeros(len(triangles))
+    for m in range(len(triangles)):
+        whole = signed_area(triangles[m])
+        if whole != 0.0:
+            share[m] = signed_area(clip_to_rectangle(triangles[m], half)) / whole
+    return share
 
 
 def simplify(polygon: np.ndarray, tolerance: float) -> np.ndarray:

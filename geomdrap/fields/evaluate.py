@@ -57,6 +57,7 @@ def evaluate(
         statistics=statistics(net, trimmed, shear, limit),
         checks=checks,
         warnings=(*net.warnings, *doubts(flat, checks, areas(trimmed))),
+        trimmed=trimmed,
     )
 
 

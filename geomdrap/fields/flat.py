@@ -23,7 +23,7 @@ def flat_pattern(net: Net, trimmed: Trimmed, limit_angle: float) -> FlatPattern:
     cells = trimmed.at / net.pitch
     rings = [r * net.pitch for r in outlines(cells, trimmed.kind, mesh.neighbours, mesh.neighbour_edge)]
     if net.reach is not None:
-        rings = [clip_to_rectangle(r, net.reach) for r in rings]
+        rings = [clip_to_rectangle(r, (float(net.reach[0]), float(net.reach[1]))) for r in rings]
     rings = [simplify(r, STRAIGHT) for r in rings if len(r) > 2]
     areas = [signed_area(r) for r in rings]
     least = SPECK * net.pitch**2

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from geomdrap.fields.trim import Trimmed
     from geomdrap.fishnet import Net
 
 
@@ -88,7 +89,8 @@ class Drape:
     Per facet of ``net.surface`` (m,): ``face_shear`` degrees, signed; ``face_warp``, ``face_weft`` (m, 3) unit
     vectors; ``face_thickness`` and ``face_fibre_volume``, factors on the flat fabric's; ``face_coverage`` 0..1;
     ``face_reason``, a ``Status``: why it is bare. NaN on bare facets. ``warnings`` are the net's, and what the result
-    itself gives reason to doubt.
+    itself gives reason to doubt. ``trimmed``: the facets cut to the pitch, with fabric coordinates and directions, of
+    which all of this was read.
     """
 
     net: Net
@@ -106,3 +108,4 @@ class Drape:
     statistics: ShearStatistics
     checks: Checks
     warnings: tuple[str, ...]
+    trimmed: Trimmed

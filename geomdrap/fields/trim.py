@@ -8,6 +8,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from geomdrap.fields.contour import shares_in_rectangle
 from geomdrap.fields.cuttable import make_cuttable
 from geomdrap.fields.gradient import bend_cells, complete_ends, shear_gradients
 from geomdrap.fields.pieces import require_few_pieces
@@ -69,7 +70,7 @@ def trim(net: Net, progress: Callable[[float], None] = lambda _: None) -> Trimme
     bare = np.flatnonzero(kind == 0)
     at[bare], tangent[bare] = np.nan, np.nan
     tangent /= net.pitch
-    return Trimmed(mesh, at, kind, tangent, area, share, _spread_reasons(reason, mesh.neighbours, net))
+    return Trimmed(mesh, at, kind, tangent, area, share, _spread_reasons(reason, mesh.neighbours))
 
 
 _SPLIT: WeakKeyDictionary[Surface, tuple[float, Refined, np.ndarray]] = WeakKeyDictionary()
@@ -113,31 +114,21 @@ def _all_bare(mesh: Refined, area: np.ndarray, why: Status) -> Trimmed:
 
 def _share_in_blank(at: np.ndarray, reach: tuple[float, float]) -> np.ndarray:
     """Share (m,) of each flat facet (m, 3, 2) within |u| ≤ reach[0], |v| ≤ reach[1]."""
-    from geomdrap.fields.contour import clip_to_rectangle, signed_area
-
-    size = np.abs(at).max(axis=1)
-    inside = (size[:, 0] <= reach[0]) & (size[:, 1] <= reach[1])
+    inside = (np.abs(at) <= reach).all(axis=(1, 2))
     share = inside.astype(float)
-    least = np.abs(np.where(np.sign(at).min(axis=1) * np.sign(at).max(axis=1) > 0, np.abs(at).min(axis=1), 0.0))
-    for f in np.flatnonzero(~inside & (least[:, 0] < reach[0]) & (least[:, 1] < reach[1])):
-        cut = clip_to_rectangle(at[f], reach)
-        whole = signed_area(at[f])
-        share[f] = signed_area(cut) / whole if len(cut) and whole != 0.0 else 0.0
+    rows = np.flatnonzero(~inside & ((at.min(axis=1) < reach) & (at.max(axis=1) > np.negative(reach))).all(axis=1))
+    share[rows] = shares_in_rectangle(at[rows], (float(reach[0]), float(reach[1])))
     return share
 
 
-def _spread_reasons(reason: np.ndarray, neighbours: np.ndarray, net: Net) -> np.ndarray:
+def _spread_reasons(reason: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
     """Give bare facets that nothing stopped at the reason of the bare facets beside them."""
-    unknown = reason == Status.UNREACHED
-    while unknown.any():
-        rows = np.flatnonzero(unknown)
-        beside = neighbours[rows]
-        theirs = np.where(beside >= 0, reason[np.maximum(beside, 0)], Status.UNREACHED)
-        theirs = np.where(theirs == Status.PRESENT, np.uint8(Status.UNREACHED), theirs)
-        found = theirs.max(axis=1)
-        if not (found > 0).any():
-            break
-        reason = reason.copy()
-        reason[rows] = found
-        unknown = reason == Status.UNREACHED
+    reason = reason.copy()
+    front = np.flatnonzero((reason != Status.UNREACHED) & (reason != Status.PRESENT))
+    while len(front):
+        beside = neighbours[front]
+        front = np.unique(beside[(beside >= 0) & (reason[beside] == Status.UNREACHED)])
+        beside = neighbours[front]
+        known = (beside >= 0) & (reason[beside] != Status.PRESENT)
+        reason[front] = np.where(known, reason[beside], np.uint8(Status.UNREACHED)).max(axis=1, initial=0)
     return reason

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from geomdrap.geodesic.compiled import inlined, kernel
+from geomdrap.geodesic.compiled import inlined, tight
 from geomdrap.geodesic.mesh import in_frame, in_space
-from geomdrap.geodesic.unfold import ENDED, LEFT_THE_PART, shoot, step_over
+from geomdrap.geodesic.unfold import ENDED, LEFT_THE_PART, TIE, is_beyond, shoot, step_over
 
 CLOSED = 0
 OFF_PART = 1
@@ -27,6 +27,9 @@ NOT_CLOSED = 3
 # Of the side: distance between the ends of the two lines before the last correction. The correction leaves its
 # square, and its product with the bends on the way: 1e-8 of the side on a fine mesh, 1e-6 on a very coarse one.
 TOLERANCE = 1e-5
+# Of the side: where the corrected lines cross the same edges, and end in the same face, only the bends on the way
+# differ for them; with those changing by less than this the next round would find nothing to correct.
+SETTLED = 5e-9
 MEET = 1e-7  # of the side: ends this close that lie in faces which do not touch are one
 ROUNDS = 24
 TOGETHER = 6  # rounds in which both lines are turned at once
@@ -50,6 +53,25 @@ def crossing(
 
 
 @inlined
+def is_inside(row: np.ndarray, f: int, x: float, y: float, tie: float) -> bool:
+    """Whether a point lies on face f."""
+    return not (is_beyond(row, f, 0, x, y, tie) or is_beyond(row, f, 1, x, y, tie) or is_beyond(row, f, 2, x, y, tie))
+
+
+@inlined
+def moved_into(
+    row: np.ndarray, link: np.ndarray, g: int, f: int, x: float, y: float, dx: float, dy: float
+) -> tuple[bool, float, float, float, float]:
+    """A point and a direction of face g in the frame of face f, where that is the same or touches it."""
+    together = f == g
+    for k in range(3):
+        if not together and link[g, k] >= 0 and link[g, k] >> 2 == f:
+            x, y, dx, dy = step_over(row, g, k, x, y, dx, dy)
+            together = True
+    return together, x, y, dx, dy
+
+
+@inlined
 def apart(frames: np.ndarray, f: int, x: float, y: float, g: int, p: float, q: float) -> float:
     """Distance in space of two points in the frames of two faces, mm."""
     ax, ay, az = in_space(frames, f, x, y)
@@ -57,7 +79,7 @@ def apart(frames: np.ndarray, f: int, x: float, y: float, g: int, p: float, q: f
     return math.sqrt((ax - bx) ** 2 + (ay - by) ** 2 + (az - bz) ** 2)
 
 
-@kernel
+@tight
 def meeting_rotation(
     frames: np.ndarray,
     f: int,
@@ -96,7 +118,7 @@ def meeting_rotation(
     return min(max(turn_b, -0.5), 0.5), min(max(turn_d, -0.5), 0.5)
 
 
-@kernel
+@tight
 def close_cell(
     row: np.ndarray,
     link: np.ndarray,
@@ -125,15 +147,10 @@ def close_cell(
     """
     tolerance = TOLERANCE * max(lb, ld)
     for n in range(ROUNDS):
-        sb, f, px, py, ux, uy = shoot(row, link, fb, xb, yb, bx, by, lb)
-        sd, g, qx, qy, wx, wy = shoot(row, link, fd, xd, yd, dx, dy, ld)
-        together = f == g
-        if not together:
-            for k in range(3):
-                if link[g, k] >= 0 and link[g, k] >> 2 == f:
-                    qx, qy, wx, wy = step_over(row, g, k, qx, qy, wx, wy)
-                    together = True
-                    break
+        sb, f, px, py, ux, uy, clear, fall = shoot(row, link, fb, xb, yb, bx, by, lb)
+        sd, g, qx, qy, wx, wy, clear_d, fall_d = shoot(row, link, fd, xd, yd, dx, dy, ld)
+        clear, fall = min(clear, clear_d) if f == g else -1.0, max(fall, fall_d)
+        together, qx, qy, wx, wy = moved_into(row, link, g, f, qx, qy, wx, wy)
         if together:
             found, cx, cy = crossing(px, py, lb, qx, qy, ld, sense)
             if not found:
@@ -153,7 +170,8 @@ def close_cell(
                 square = wx * wx + wy * wy
                 c, s = (ndx * wx + ndy * wy) / square, (ndy * wx - ndx * wy) / square
                 dx, dy = c * dx - s * dy, s * dx + c * dy
-            if miss <= tolerance:
+            settled = 2.0 * miss <= clear and miss * fall <= SETTLED and sb == ENDED and sd == ENDED
+            if miss <= tolerance or (settled and is_inside(row, f, cx, cy, TIE * lb)):
                 state = CLOSED if sb == ENDED and sd == ENDED else OFF_PART
                 return state, f, cx, cy, bx, by, nbx, nby, dx, dy, ndx, ndy
         else:

@@ -145,7 +145,7 @@ def _march(
     guides: Guides | None,
 ) -> Grid:
     """Seed, generators (α-nodes), cells (β-nodes), front carried on; ``axis``: strains of the weft generator."""
-    grid = empty_grid(*sides(extent, pitch, fabric), APART)
+    grid = empty_grid(*sides(extent, pitch, fabric), start.point, APART)
     i0, j0 = extent.west, extent.south
     grid.node[i0, :, STRAIN] = axis
     weft_rad = math.radians(fabric.weft_angle)

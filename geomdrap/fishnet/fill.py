@@ -11,7 +11,7 @@ import numpy as np
 from geomdrap.fishnet.grid import PIECES, TRIED, Grid
 from geomdrap.fishnet.march import DOUBTFUL, NOTHING, SENSES, inside, is_open, try_cell
 from geomdrap.fishnet.place import WARP_PIECE, WEFT_PIECE, departure, has_piece, settle
-from geomdrap.geodesic.compiled import inlined, kernel
+from geomdrap.geodesic.compiled import inlined, kernel, tight
 from geomdrap.geodesic.mesh import Mesh
 
 
@@ -23,14 +23,15 @@ def squareness(grid: Grid, i: int, j: int, su: int, sv: int) -> float:
     return abs(ux * vy - uy * vx)
 
 
-@kernel
-def cells_around(grid: Grid, i0: int, j0: int, nodes: np.ndarray, claims: np.ndarray) -> np.ndarray:
-    """Open cells with a corner among ``nodes`` (n, 2): A and sense (k, 4), the best for each node that they give.
+@tight
+def cells_around(
+    grid: Grid, i0: int, j0: int, nodes: np.ndarray, claims: np.ndarray, cells: np.ndarray, square: np.ndarray
+) -> int:
+    """Open cells with a corner among ``nodes`` (n, 2), the best for each node that they give; how many.
 
-    ``claims`` (nu, nv) is zero, and is left so.
+    A and the sense of march go into ``cells`` (16 n, 4), their squareness into ``square`` (16 n,). ``claims``
+    (nu, nv) is zero, and is left so.
     """
-    cells = np.empty((16 * len(nodes), 4), np.int64)
-    square = np.empty(len(cells))
     count = 0
     for n in range(len(nodes)):
         for corner in range(4):
@@ -59,27 +60,35 @@ def cells_around(grid: Grid, i0: int, j0: int, nodes: np.ndarray, claims: np.nda
                 square[at] = sine
     for n in range(count):
         claims[cells[n, 0] + cells[n, 2], cells[n, 1] + cells[n, 3]] = 0
-    return cells[:count]
+    return count
+
+
+@tight
+def try_cells(mesh: Mesh, grid: Grid, cells: np.ndarray, tried: np.ndarray, new: np.ndarray) -> tuple[int, bool]:
+    """Try ``cells`` (n, 4); the nodes ``tried`` and those ``new`` (n, 2): how many are, and if any is doubtful."""
+    count = 0
+    doubtful = False
+    for n in range(len(cells)):
+        i, j, su, sv = cells[n, 0], cells[n, 1], cells[n, 2], cells[n, 3]
+        tried[n, 0], tried[n, 1] = i + su, j + sv
+        known = grid.face[i + su, j + sv] > 0
+        result = try_cell(mesh, grid, i, j, su, sv)
+        if result != NOTHING and not known:
+            doubtful = doubtful or result == DOUBTFUL
+            new[count, 0], new[count, 1] = i + su, j + sv
+            count += 1
+    return count, doubtful
 
 
 @kernel
 def close_from(mesh: Mesh, grid: Grid, i0: int, j0: int, nodes: np.ndarray, claims: np.ndarray) -> None:
     """Close cells outward from ``nodes`` (n, 2), in rounds, until nothing more can be closed."""
     while len(nodes) > 0:
-        cells = cells_around(grid, i0, j0, nodes, claims)
-        nodes = np.empty((len(cells), 2), np.int64)
+        cells = np.empty((16 * len(nodes), 4), np.int64)
+        cells = cells[: cells_around(grid, i0, j0, nodes, claims, cells, np.empty(len(cells)))]
+        nodes = np.empty((len(cells), 2), np.int64)  # all that were tried: where a cell gives nothing another one may
         new = np.empty_like(nodes)
-        count = 0
-        doubtful = False
-        for n in range(len(cells)):
-            i, j, su, sv = cells[n, 0], cells[n, 1], cells[n, 2], cells[n, 3]
-            nodes[n, 0], nodes[n, 1] = i + su, j + sv  # where this cell gives nothing another one may
-            known = grid.face[i + su, j + sv] > 0
-            result = try_cell(mesh, grid, i, j, su, sv)
-            if result != NOTHING and not known:
-                doubtful = doubtful or result == DOUBTFUL
-                new[count, 0], new[count, 1] = i + su, j + sv
-                count += 1
+        count, doubtful = try_cells(mesh, grid, cells, nodes, new)
         if doubtful:
             settle(mesh, grid, new, count)
 
@@ -87,7 +96,14 @@ def close_from(mesh: Mesh, grid: Grid, i0: int, j0: int, nodes: np.ndarray, clai
 @kernel
 def edge_nodes(grid: Grid) -> np.ndarray:
     """The nodes (n, 2) from which less than four pieces go."""
-    nodes = np.empty((256, 2), np.int64)
+    nodes = np.empty((list_edge_nodes(grid, np.empty((0, 2), np.int64)), 2), np.int64)
+    list_edge_nodes(grid, nodes)
+    return nodes
+
+
+@tight
+def list_edge_nodes(grid: Grid, nodes: np.ndarray) -> int:
+    """Put the nodes from which less than four pieces go into ``nodes`` (n, 2), as many as it holds; how many."""
     count = 0
     for i in range(grid.box[0], grid.box[1] + 1):
         for j in range(grid.box[2], grid.box[3] + 1):
@@ -97,8 +113,7 @@ def edge_nodes(grid: Grid) -> np.ndarray:
                 and has_piece(grid, i, j, 0, -1)
             ):
                 continue
-            if count == len(nodes):
-                nodes = np.concatenate((nodes, np.empty_like(nodes)))
-            nodes[count, 0], nodes[count, 1] = i, j
+            if count < len(nodes):
+                nodes[count, 0], nodes[count, 1] = i, j
             count += 1
-    return nodes[:count]
+    return count

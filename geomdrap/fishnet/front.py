@@ -25,7 +25,7 @@ from geomdrap.fishnet.march import (
 )
 from geomdrap.fishnet.place import departure, has_piece, meets_itself, settle, side_between
 from geomdrap.fishnet.reasons import say_why
-from geomdrap.geodesic.compiled import inlined, kernel
+from geomdrap.geodesic.compiled import inlined, kernel, tight
 from geomdrap.geodesic.mesh import Mesh, in_space
 from geomdrap.geodesic.unfold import ENDED, shoot
 
@@ -83,7 +83,7 @@ def branch(mesh: Mesh, grid: Grid, i: int, j: int, di: int, dj: int, dx: float, 
     return laid
 
 
-@kernel
+@tight
 def beside_fold(grid: Grid, i: int, j: int) -> bool:
     """Whether one of the eight nodes around (i, j) is folded or behind a fold."""
     for k in range(max(i - 1, 0), min(i + 2, grid.face.shape[0])):
@@ -93,7 +93,7 @@ def beside_fold(grid: Grid, i: int, j: int) -> bool:
     return False
 
 
-@kernel
+@tight
 def sides_ahead(mesh: Mesh, grid: Grid, i: int, j: int, di: int, dj: int) -> int:
     """How many sides the yarn that arrives at node (i, j) can go straight on into places not yet reached.
 
@@ -111,7 +111,7 @@ def sides_ahead(mesh: Mesh, grid: Grid, i: int, j: int, di: int, dj: int) -> int
         if beside_fold(grid, k, m):
             return n if n > 0 else -IS_BEHIND_FOLD
         side = side_between(grid, k - di, m - dj, di, dj)
-        status, face, x, y, dx, dy = shoot(mesh.row, mesh.link, face, x, y, dx, dy, side)
+        status, face, x, y, dx, dy, _, _ = shoot(mesh.row, mesh.link, face, x, y, dx, dy, side)
         x, y = x + side * dx, y + side * dy
         if status != ENDED:
             return n if n > 0 else -IS_OFF_PART
@@ -140,7 +140,24 @@ def look_ahead(mesh: Mesh, grid: Grid, known: np.ndarray) -> None:
 
     ``known`` (4, nu, nv) keeps what was counted before. A place that no yarn leads to takes the reason.
     """
-    looked_at = np.empty((64, 2), np.int64)
+    looked_at = np.empty((4 * ends_beside_nothing(grid), 2), np.int64)
+    look_from(mesh, grid, known, looked_at)
+
+
+@tight
+def ends_beside_nothing(grid: Grid) -> int:
+    """How many nodes lie beside a place not yet reached."""
+    count = 0
+    for i in range(grid.box[0], grid.box[1] + 1):
+        for j in range(grid.box[2], grid.box[3] + 1):
+            if grid.face[i, j] != 0 and not surrounded(grid, i, j):
+                count += 1
+    return count
+
+
+@tight
+def look_from(mesh: Mesh, grid: Grid, known: np.ndarray, looked_at: np.ndarray) -> None:
+    """``look_ahead``, with room for the places (n, 2) that are looked at."""
     count = 0
     for i in range(grid.box[0], grid.box[1] + 1):
         for j in range(grid.box[2], grid.box[3] + 1):
@@ -151,8 +168,6 @@ def look_ahead(mesh: Mesh, grid: Grid, known: np.ndarray) -> None:
                 if known[a, i, j] == 0 and leads_on(grid, i, j, di, dj):
                     sides = sides_ahead(mesh, grid, i, j, di, dj)
                     known[a, i, j] = 1 + sides if sides >= 0 else sides - 1
-                    if count == len(looked_at):
-                        looked_at = np.concatenate((looked_at, np.empty_like(looked_at)))
                     looked_at[count, 0], looked_at[count, 1] = i + di, j + dj
                     count += 1
     for n in range(count):
@@ -174,7 +189,7 @@ def why_not(grid: Grid, i: int, j: int, known: np.ndarray) -> int:
     return why
 
 
-@kernel
+@tight
 def next_ways_on(grid: Grid, i0: int, j0: int, known: np.ndarray, ways: np.ndarray) -> tuple[int, int]:
     """The yarns to continue next, all of one rank, in ``ways`` (n, 3) as i, j, direction; ``(n, sides)``."""
     count, most, nearest = 0, 0, grid.face.size

@@ -58,9 +58,10 @@ class Grid(NamedTuple):
     the node toward +u (+v), *in* how it arrives; and the strain of its weft piece to j + 1. ``marks`` (nu, nv, 3)
     holds the status; the pieces that exist (bit 1: warp to i + 1, bit 2: weft to j + 1); and a bit per sense of march
     in which the node's cell was attempted. ``sides_u`` (nu - 1,) and ``sides_v`` (nv - 1,) are the lengths of the
-    cell sides, mm. ``bucket`` and ``following`` are the spatial hash in which the net looks for itself (links are (i
-    << 32 | j) + 1); ``box`` holds the least and greatest i, then j, of the nodes, and the spread of one sheet (see
-    ``place``). Few arrays, because each costs time at every call of a kernel.
+    cell sides, mm. ``bucket`` and ``following`` are the spatial hash in which the net looks for itself (links are
+    (i << 32 | j) + 1), ``place`` (nu, nv, 3) where the nodes are, mm from ``centre`` (3,), in few digits and for
+    that alone; ``box`` holds the least and greatest i, then j, of the nodes, and the spread of one sheet (see the
+    module ``place``). Few arrays, because each costs time at every call of a kernel.
     """
 
     face: np.ndarray
@@ -70,16 +71,18 @@ class Grid(NamedTuple):
     sides_v: np.ndarray
     bucket: np.ndarray
     following: np.ndarray
+    place: np.ndarray
+    centre: np.ndarray
     box: np.ndarray
 
 
 POINT, WARP_OUT, WARP_IN, WEFT_OUT, WEFT_IN, STRAIN = 0, 2, 4, 6, 8, 10  # columns of Grid.node
 STATUS, PIECES, TRIED = 0, 1, 2  # columns of Grid.marks
 
-BYTES_PER_NODE = 4 + 11 * 8 + 3 + 8 + 10 + 24 + 16  # grid, hash chain and buckets, points, shears
+BYTES_PER_NODE = 4 + 11 * 8 + 3 + 8 + 6 + 12 + 24 + 16  # grid, hash chain, buckets and places, points, shears
 
 
-def empty_grid(sides_u: np.ndarray, sides_v: np.ndarray, one_sheet: int) -> Grid:
+def empty_grid(sides_u: np.ndarray, sides_v: np.ndarray, centre: np.ndarray, one_sheet: int) -> Grid:
     """Grid of (len(sides_u) + 1, len(sides_v) + 1) absent nodes; memory is taken only where it is touched."""
     shape = (len(sides_u) + 1, len(sides_v) + 1)
     buckets = 1 << max(8, int(np.ceil(np.log2(shape[0] * shape[1]))) - 2)
@@ -89,7 +92,9 @@ def empty_grid(sides_u: np.ndarray, sides_v: np.ndarray, one_sheet: int) -> Grid
         marks=np.zeros((*shape, 3), np.uint8),
         sides_u=np.ascontiguousarray(sides_u, dtype=float),
         sides_v=np.ascontiguousarray(sides_v, dtype=float),
-        bucket=np.zeros((buckets, 5), np.int64),
+        bucket=np.zeros((buckets, 6), np.int32),
         following=np.zeros(shape, np.int64),
+        place=np.empty((*shape, 3), np.float32),
+        centre=np.array(centre, dtype=float),
         box=np.array([shape[0], -1, shape[1], -1, one_sheet]),
     )

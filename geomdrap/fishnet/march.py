@@ -18,7 +18,7 @@ from geomdrap.fishnet.place import (
     settle,
     side_between,
 )
-from geomdrap.geodesic.compiled import inlined, kernel
+from geomdrap.geodesic.compiled import inlined, kernel, tight
 from geomdrap.geodesic.mesh import Mesh, in_frame, in_space
 from geomdrap.geodesic.trace import follow
 from geomdrap.geodesic.unfold import ENDED
@@ -122,7 +122,7 @@ def turned(dx: float, dy: float, angle_rad: float) -> tuple[float, float]:
     return c * dx - s * dy, s * dx + c * dy
 
 
-@kernel
+@tight
 def carry_on(mesh: Mesh, grid: Grid, i: int, j: int, di: int, dj: int) -> bool:
     """Lay one more side of the yarn that arrives at node (i, j) in direction (di, dj)."""
     bx, by = departure(grid, i, j, -di, -dj)
@@ -130,7 +130,7 @@ def carry_on(mesh: Mesh, grid: Grid, i: int, j: int, di: int, dj: int) -> bool:
     return lay_yarn(mesh, grid, i, j, di, dj, grid.face[i, j] - 1, x, y, -bx, -by)
 
 
-@kernel
+@tight
 def same_place(mesh: Mesh, grid: Grid, i: int, j: int, face: int, x: float, y: float, side: float) -> bool:
     """Whether a point is where node (i, j) already lies."""
     px, py, pz = in_space(mesh.frames, face, x, y)
@@ -230,7 +230,7 @@ def shadowed(grid: Grid, i: int, j: int, su: int, sv: int) -> bool:
     return b in (IS_FOLDED, IS_BEHIND_FOLD) or d in (IS_FOLDED, IS_BEHIND_FOLD)
 
 
-@kernel
+@tight
 def fill_diagonal(
     mesh: Mesh,
     grid: Grid,

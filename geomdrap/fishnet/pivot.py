@@ -30,6 +30,7 @@ from geomdrap.fishnet.cell import (
     apart,
     crossing,
     meeting_rotation,
+    moved_into,
 )
 from geomdrap.geodesic.compiled import inlined, kernel
 from geomdrap.geodesic.mesh import after, in_frame
@@ -202,13 +203,10 @@ def close_round_vertices(  # noqa: PLR0912
     state, end, cx, cy, nbx, nby, ndx, ndy = NOT_CLOSED, -1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for n in range(ROUNDS):
         lb, ld = lines[0, LENGTH], lines[1, LENGTH]
-        sb, f, px, py, ux, uy = shoot(row, link, faces[0], lines[0, X], lines[0, Y], lines[0, DX], lines[0, DY], lb)
-        sd, g, qx, qy, wx, wy = shoot(row, link, faces[1], lines[1, X], lines[1, Y], lines[1, DX], lines[1, DY], ld)
-        together = f == g
-        for k in range(3):
-            if not together and link[g, k] >= 0 and link[g, k] >> 2 == f:
-                qx, qy, wx, wy = step_over(row, g, k, qx, qy, wx, wy)
-                together = True
+        b, d = lines[0], lines[1]
+        sb, f, px, py, ux, uy, _, _ = shoot(row, link, faces[0], b[X], b[Y], b[DX], b[DY], lb)
+        sd, g, qx, qy, wx, wy, _, _ = shoot(row, link, faces[1], d[X], d[Y], d[DX], d[DY], ld)
+        together, qx, qy, wx, wy = moved_into(row, link, g, f, qx, qy, wx, wy)
         if together:
             found, cx, cy = crossing(px, py, lb, qx, qy, ld, sense)
             if not found:

@@ -17,7 +17,7 @@ from geomdrap.fishnet.grid import (
     WEFT_OUT,
     Grid,
 )
-from geomdrap.geodesic.compiled import inlined, kernel
+from geomdrap.geodesic.compiled import inlined, kernel, tight
 from geomdrap.geodesic.mesh import Mesh, in_space, normal_of
 
 PRESENT = 1
@@ -41,8 +41,10 @@ SQUEEZED = 8
 NEAR_FOLD = 16  # apart in i or j: stretches that meet this near to what parts them need a dart there
 # Space is hashed in cubes of CUBE sides, each with the range of i and j that it holds: as long as no two of them are
 # more than APART from the node (``Grid.box[4]``), they need not be looked at one by one.
-CUBE = 4.0
-HEAD, LEAST_I, MOST_I, LEAST_J, MOST_J = 0, 1, 2, 3, 4  # columns of Grid.bucket
+CUBE = 3.0
+ROUNDED = 0.05  # of a side squared: the places in the hash have few digits
+# columns of Grid.bucket: the node entered last as i + 1 and j, then the ranges
+HEAD, HEAD_J, LEAST_I, MOST_I, LEAST_J, MOST_J = 0, 1, 2, 3, 4, 5
 
 
 @inlined
@@ -51,7 +53,7 @@ def bucket_of(a: int, b: int, c: int, mask: int) -> int:
     return ((a * 73856093) ^ (b * 19349663) ^ (c * 83492791)) & mask
 
 
-@kernel
+@tight
 def between(mesh: Mesh, grid: Grid, i: int, j: int, k: int, m: int, px: float, py: float, pz: float) -> int:
     """What lies straight between two nodes in the lattice: PRESENT where that is net near (px, py, pz) mm.
 
@@ -80,7 +82,7 @@ def between(mesh: Mesh, grid: Grid, i: int, j: int, k: int, m: int, px: float, p
     return PRESENT if steps < SQUEEZED else NEEDS_DART
 
 
-@kernel
+@tight
 def is_near(mesh: Mesh, grid: Grid, face: int, px: float, py: float, pz: float, k: int, m: int) -> bool:
     """Whether node (k, m) lies where a point of a face does, on the same sheet; either sees it from the other."""
     side = grid.sides_u[0]
@@ -99,17 +101,24 @@ def is_near(mesh: Mesh, grid: Grid, face: int, px: float, py: float, pz: float, 
     return alike > -0.3 and away2 < (ROUND_EDGE * side) ** 2
 
 
-@kernel
+@inlined
 def stranger_in(
     mesh: Mesh, grid: Grid, key: int, i: int, j: int, face: int, px: float, py: float, pz: float
 ) -> int:
     """Why node (i, j) cannot lie here because of another stretch of the net in a bucket; 0 if it can."""
     why = 0
-    link = grid.bucket[key, HEAD]
+    far2 = (NEAR * NEAR + SHEET * SHEET + ROUNDED) * grid.sides_u[0] ** 2
+    x, y, z = px - grid.centre[0], py - grid.centre[1], pz - grid.centre[2]
+    there = grid.place
+    link = head_of(grid, key)
     while link > 0:
         k, m = (link - 1) >> 32, (link - 1) & 0xFFFFFFFF
         link = grid.following[k, m]
-        if (abs(k - i) > APART or abs(m - j) > APART) and is_near(mesh, grid, face, px, py, pz, k, m):
+        if (
+            (abs(k - i) > APART or abs(m - j) > APART)
+            and (there[k, m, 0] - x) ** 2 + (there[k, m, 1] - y) ** 2 + (there[k, m, 2] - z) ** 2 < far2
+            and is_near(mesh, grid, face, px, py, pz, k, m)
+        ):
             found = between(mesh, grid, i, j, k, m, px, py, pz)
             if found == MEETS_ITSELF:
                 return MEETS_ITSELF
@@ -142,6 +151,13 @@ def meets_itself(mesh: Mesh, grid: Grid, i: int, j: int, face: int, px: float, p
 
 
 @inlined
+def head_of(grid: Grid, key: int) -> int:
+    """Link to the node that was entered last into a bucket, 0 for none."""
+    i = int(grid.bucket[key, HEAD])
+    return ((i - 1) << 32 | int(grid.bucket[key, HEAD_J])) + 1 if i > 0 else 0
+
+
+@inlined
 def key_of(grid: Grid, px: float, py: float, pz: float) -> int:
     """Bucket of a point in space."""
     per = 1.0 / (CUBE * grid.sides_u[0])
@@ -152,9 +168,9 @@ def key_of(grid: Grid, px: float, py: float, pz: float) -> int:
 def enter(grid: Grid, i: int, j: int, px: float, py: float, pz: float) -> None:
     """Enter node (i, j) into the hash."""
     key = key_of(grid, px, py, pz)
-    grid.following[i, j] = grid.bucket[key, HEAD]
+    grid.following[i, j] = head_of(grid, key)
     first = grid.bucket[key, HEAD] == 0
-    grid.bucket[key, HEAD] = (i << 32 | j) + 1
+    grid.bucket[key, HEAD], grid.bucket[key, HEAD_J] = i + 1, j
     grid.bucket[key, LEAST_I] = i if first else min(grid.bucket[key, LEAST_I], i)
     grid.bucket[key, MOST_I] = i if first else max(grid.bucket[key, MOST_I], i)
     grid.bucket[key, LEAST_J] = j if first else min(grid.bucket[key, LEAST_J], j)
@@ -170,6 +186,11 @@ def place(mesh: Mesh, grid: Grid, i: int, j: int, face: int, x: float, y: float)
     px, py, pz = in_space(mesh.frames, face, x, y)
     doubtful = meets_itself(mesh, grid, i, j, face, px, py, pz) != 0
     enter(grid, i, j, px, py, pz)
+    grid.place[i, j, 0], grid.place[i, j, 1], grid.place[i, j, 2] = (
+        px - grid.centre[0],
+        py - grid.centre[1],
+        pz - grid.centre[2],
+    )
     grid.face[i, j] = face + 1
     grid.node[i, j, POINT] = x
     grid.node[i, j, POINT + 1] = y
@@ -204,15 +225,17 @@ def settle(mesh: Mesh, grid: Grid, nodes: np.ndarray, count: int) -> int:
     return gone
 
 
-@kernel
+@tight
 def take_back(mesh: Mesh, grid: Grid, i: int, j: int, why: int) -> None:
     """Remove node (i, j) and its pieces; its status says why."""
     px, py, pz = in_space(mesh.frames, grid.face[i, j] - 1, grid.node[i, j, 0], grid.node[i, j, 1])
     key = key_of(grid, px, py, pz)
     mine = (i << 32 | j) + 1
-    link = grid.bucket[key, HEAD]
+    link = head_of(grid, key)
     if link == mine:
-        grid.bucket[key, HEAD] = grid.following[i, j]
+        onward = grid.following[i, j]
+        grid.bucket[key, HEAD] = ((onward - 1) >> 32) + 1
+        grid.bucket[key, HEAD_J] = (onward - 1) & 0x7FFFFFFF
     while link > 0 and link != mine:
         k, m = (link - 1) >> 32, (link - 1) & 0xFFFFFFFF
         link = grid.following[k, m]
@@ -227,7 +250,7 @@ def take_back(mesh: Mesh, grid: Grid, i: int, j: int, why: int) -> None:
         grid.marks[i, j - 1, PIECES] &= ~WEFT_PIECE
 
 
-@kernel
+@tight
 def shrink_box(grid: Grid) -> None:
     """Fit the box to the nodes that are left."""
     while grid.box[0] < grid.box[1] and not grid.face[grid.box[0]].any():
@@ -285,7 +308,7 @@ def side_between(grid: Grid, i: int, j: int, di: int, dj: int) -> float:
     return grid.sides_v[low] * (1.0 + grid.node[i, low, STRAIN])
 
 
-@kernel
+@tight
 def place_seed(
     mesh: Mesh, grid: Grid, i: int, j: int, face: int, x: float, y: float, dx: float, dy: float, weft_rad: float
 ) -> None:

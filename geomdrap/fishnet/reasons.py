@@ -7,7 +7,7 @@ import numpy as np
 from geomdrap.fishnet.grid import STATUS, Grid
 from geomdrap.fishnet.march import IS_BEHIND_FOLD, IS_FOLDED, UNREACHED
 from geomdrap.fishnet.place import PRESENT
-from geomdrap.geodesic.compiled import inlined, kernel
+from geomdrap.geodesic.compiled import inlined, kernel, tight
 
 
 @kernel
@@ -35,6 +35,20 @@ def spread(grid: Grid, folds: bool) -> None:
     size = (i1 - i0 + 1) * (j1 - j0 + 1)
     front, reached = np.empty((size, 2), np.int32), np.empty((size, 2), np.int32)
     coming = np.zeros((i1 - i0 + 1, j1 - j0 + 1), np.uint8)
+    spread_in(grid, folds, (i0, i1, j0, j1), front, reached, coming)
+
+
+@tight
+def spread_in(
+    grid: Grid,
+    folds: bool,
+    window: tuple[int, int, int, int],
+    front: np.ndarray,
+    reached: np.ndarray,
+    coming: np.ndarray,
+) -> None:
+    """``spread`` within a window i0, i1, j0, j1; ``front`` and ``reached`` (n, 2) are room, ``coming`` is zero."""
+    i0, i1, j0, j1 = window
     count = 0
     for i in range(i0, i1 + 1):
         for j in range(j0, j1 + 1):

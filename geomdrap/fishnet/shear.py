@@ -12,7 +12,7 @@ import numpy as np
 
 from geomdrap.fishnet.grid import PIECES, Grid
 from geomdrap.fishnet.place import WARP_PIECE, WEFT_PIECE, departure
-from geomdrap.geodesic.compiled import inlined, kernel
+from geomdrap.geodesic.compiled import inlined, tight
 from geomdrap.geodesic.mesh import Mesh
 
 
@@ -24,7 +24,6 @@ def corner_cosine(grid: Grid, i: int, j: int, su: int, sv: int) -> float:
     return min(max(ax * bx + ay * by, -1.0), 1.0)
 
 
-@kernel
 def shears(grid: Grid, i0: int, j0: int, valid: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Signed shear of the cells (nu - 1, nv - 1) and at the nodes (nu, nv), degrees, NaN where there is none.
 
@@ -35,7 +34,15 @@ def shears(grid: Grid, i0: int, j0: int, valid: np.ndarray) -> tuple[np.ndarray,
     """
     cells = np.full(valid.shape, np.nan)
     nodes = np.zeros((valid.shape[0] + 1, valid.shape[1] + 1))
-    count = np.zeros(nodes.shape, np.uint8)
+    put_shears(grid, i0, j0, valid, cells, nodes, np.zeros(nodes.shape, np.uint8))
+    return cells, nodes
+
+
+@tight
+def put_shears(
+    grid: Grid, i0: int, j0: int, valid: np.ndarray, cells: np.ndarray, nodes: np.ndarray, count: np.ndarray
+) -> None:
+    """``shears`` into ``cells``, all NaN, and ``nodes``, all zero; ``count``, of their shape, is zero."""
     for m in range(valid.shape[0]):
         for n in range(valid.shape[1]):
             if not valid[m, n]:
@@ -52,16 +59,21 @@ def shears(grid: Grid, i0: int, j0: int, valid: np.ndarray) -> tuple[np.ndarray,
     for m in range(nodes.shape[0]):
         for n in range(nodes.shape[1]):
             nodes[m, n] = math.degrees(nodes[m, n] / count[m, n]) if count[m, n] > 0 else math.nan
-    return cells, nodes
 
 
-@kernel
 def yarn_directions(mesh: Mesh, grid: Grid, i0: int, i1: int, j0: int, j1: int) -> np.ndarray:
     """Unit directions of warp and weft at nodes [i0:i1, j0:j1] in space (2, nu, nv, 3), NaN where no yarn is.
 
     The mean of how the yarn arrives and how it goes on, in the plane of the node's facet.
     """
     out = np.full((2, i1 - i0, j1 - j0, 3), np.nan, np.float32)
+    put_directions(mesh, grid, i0, i1, j0, j1, out)
+    return out
+
+
+@tight
+def put_directions(mesh: Mesh, grid: Grid, i0: int, i1: int, j0: int, j1: int, out: np.ndarray) -> None:
+    """``yarn_directions`` into ``out``, all NaN."""
     for i in range(i0, i1):
         for j in range(j0, j1):
             if grid.face[i, j] == 0:
@@ -85,4 +97,3 @@ def yarn_directions(mesh: Mesh, grid: Grid, i0: int, i1: int, j0: int, j1: int) 
                     for k in range(3):
                         along = x * mesh.frames[f, 3 + k] + y * mesh.frames[f, 6 + k]
                         out[family, i - i0, j - j0, k] = along / norm
-    return out

@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from geomdrap.geodesic.bend import bends
-from geomdrap.geodesic.compiled import inlined, kernel
+from geomdrap.geodesic.compiled import inlined, tight
 
 if TYPE_CHECKING:
     from geomdrap.surface import Surface
@@ -63,7 +63,7 @@ def normal_of(frames: np.ndarray, f: int) -> tuple[float, float, float]:
     )
 
 
-@kernel
+@tight
 def in_frame(frames: np.ndarray, face: int, other: int, dx: float, dy: float) -> tuple[float, float]:
     """Direction of one face, turned into the plane of another that is near it."""
     if face == other:

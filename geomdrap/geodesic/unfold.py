@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from geomdrap.geodesic.compiled import inlined, kernel
+from geomdrap.geodesic.compiled import inlined, tight
 from geomdrap.geodesic.mesh import BEND, CROSS, after, before
 
 ENDED = 0
@@ -51,7 +51,7 @@ def step_over(
     return c * x - s * y + row[f, at + 2], s * x + c * y + row[f, at + 3], c * dx - s * dy, s * dx + c * dy
 
 
-@kernel
+@tight
 def first_exit_at_rim(row: np.ndarray, f: int, x: float, y: float, dx: float, dy: float) -> int:
     """Exit edge for a start on a corner or outside the face: the nearest edge that the line approaches."""
     best = -1
@@ -140,7 +140,7 @@ def turn_at(
     return ex + c * px - s * py, ey + s * px + c * py, c * dx - s * dy, s * dx + c * dy
 
 
-@kernel
+@tight
 def shoot(
     row: np.ndarray, link: np.ndarray, face: int, x: float, y: float, dx: float, dy: float, length: float
 ) -> Any:
@@ -148,27 +148,33 @@ def shoot(
 
     Parameters: ``row`` and ``link`` of a Mesh; face and 2-D start (x, y) with unit direction (dx, dy) in its
     frame, length in mm.
-    Returns ``(status, face, x, y, dx, dy)``: the end face and the images of start and direction in its frame, so
-    that the end point is ``(x + length·dx, y + length·dy)``. Where the line leaves the part, the status says so
-    and the end point lies in the plane of the last face, beyond its rim.
+    Returns ``(status, face, x, y, dx, dy, clear, fall)``: the end face and the images of start and direction in its
+    frame, so that the end point is ``(x + length·dx, y + length·dy)``; how far the line stays clear of the corners
+    between which it passes, mm; and by how much, at most, ``bends`` turn it for each mm that it moves sideways,
+    rad/mm. Where the line leaves the part, the status says so and the end point lies in the plane of the last face,
+    beyond its rim.
     """
     face &= NO_SIGN
     tie = TIE * length
     k = first_exit(row, face, x, y, dx, dy, tie)
     entered = -1
+    clear, fall = np.inf, 0.0
     for _ in range(FACE_LIMIT):
         ex, ey = x + length * dx, y + length * dy
         if not is_beyond(row, face, k, ex, ey, tie):
             other = other_exit(row, face, k, entered, ex, ey, tie)
             if other < 0:
-                return ENDED, face, x, y, dx, dy
+                return ENDED, face, x, y, dx, dy, clear, fall
             k = other
         onward = link[face, k]
         if onward < 0:
-            return LEFT_THE_PART, face, x, y, dx, dy
+            return LEFT_THE_PART, face, x, y, dx, dy, clear, fall
+        left, right = side_of(row, face, after(k), x, y, dx, dy), -side_of(row, face, k, x, y, dx, dy)
+        clear = min(clear, left, right)
+        fall += abs(row[face, BEND + 2 * k + 1]) / (left + right)
         x, y, dx, dy = turn_at(row, face, k, x, y, dx, dy)
         x, y, dx, dy = step_over(row, face, k, x, y, dx, dy)
         face = (onward >> 2) & NO_SIGN
         entered = onward & 3
         k = next_exit(row, face, entered, x, y, dx, dy, tie)
-    return TOO_MANY_FACES, face, x, y, dx, dy
+    return TOO_MANY_FACES, face, x, y, dx, dy, clear, fall

@@ -121,7 +121,7 @@ def test_a_part_without_permission_is_named(error_of: ErrorOf) -> None:
         (["--reference", "0,0,0"], "no direction"),
         (["--blank", "0x10"], "width and a height"),
         (["--limit-angle", "91"], "between 0 and 90"),
-        (["--outputs", "pdf"], "json, csv, vtu, png, dxf, svg"),
+        (["--outputs", "docx"], "json, csv, vtu, png, dxf, svg"),
         (["--tolerance", "0"], "above 0"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",

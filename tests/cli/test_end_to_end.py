@@ -16,7 +16,7 @@ from click.testing import Result
 
 Run = Callable[..., Result]
 Shell = Callable[..., subprocess.CompletedProcess[str]]
-ALL_FILES = ["drape.json", "flat.dxf", "flat.svg", "net.vtu", "nodes.csv", "part.vtu", "shear.png"]
+ALL_FILES = ["drape.json", "flat.dxf", "flat.svg", "net.vtu", "nodes.csv", "part.vtu", "report.html", "shear.png"]
 GOLDEN = ["drape.json", "flat.dxf", "flat.svg", "nodes.csv"]
 
 

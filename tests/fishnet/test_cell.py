@@ -24,7 +24,7 @@ def walk(surface, mesh, face, point, way, length):
     """End point, end face and end direction of a line; None where it leaves the part."""
     start = in_plane(surface, face, point - surface.origin[face])
     flat = np.array(in_plane(surface, face, way))
-    status, end, x, y, dx, dy = shoot(
+    status, end, x, y, dx, dy, _, _ = shoot(
         mesh.row, mesh.link, int(face), *start, *(flat / np.linalg.norm(flat)), length
     )
     if status != ENDED:

@@ -101,7 +101,7 @@ def end_of(surface, mesh, face, start, way, length):
     frame = np.array([surface.e1[face], surface.e2[face]])
     x, y = frame @ (start - surface.origin[face])
     dx, dy = frame @ way / np.linalg.norm(frame @ way)
-    status, end, x, y, dx, dy = shoot(mesh.row, mesh.link, int(face), x, y, dx, dy, length)
+    status, end, x, y, dx, dy, _, _ = shoot(mesh.row, mesh.link, int(face), x, y, dx, dy, length)
     assert status == ENDED
     return surface.origin[end] + (x + length * dx) * surface.e1[end] + (y + length * dy) * surface.e2[end]
 
@@ -156,5 +156,5 @@ def test_lines_keep_their_length_where_they_turn():
         frame = np.array([surface.e1[face], surface.e2[face]])
         x, y = frame @ (start - surface.origin[face])
         dx, dy = frame @ way
-        _, _, _, _, ex, ey = shoot(mesh.row, mesh.link, int(face), x, y, dx, dy, 300.0)
+        _, _, _, _, ex, ey, _, _ = shoot(mesh.row, mesh.link, int(face), x, y, dx, dy, 300.0)
         assert np.hypot(ex, ey) == pytest.approx(1.0, abs=1e-12)

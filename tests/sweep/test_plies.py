@@ -136,7 +136,7 @@ def test_the_summary_has_a_line_per_ply(command: Callable[..., Result]) -> None:
     [
         (("--plies", "0,up"), "'up' is not a number of degrees"),
         (("--plies", "0", "--ply-thickness", "0"), "0 is not a finite number above 0"),
-        (("--ply-thickness", "1"), "--ply-thickness needs --plies"),
+        (("--plies", "0,90", "--fe-axis", "1,0,0"), "take one ply: leave --plies out"),
     ],
 )
 def test_bad_plies_are_said(command: Callable[..., Result], asked: tuple[str, ...], words: str) -> None:

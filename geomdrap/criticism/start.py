@@ -1,0 +1,212 @@
+"""Where a fit of a new effect begins: a few probes of it, weighed beside what the base model can move.
+
+A linear step from nothing does for effects that act in proportion; others have thresholds, one sign, or no slope at
+nothing, and are tried at some values first. What takes seconds a drape is looked at once before that: where neither
+the likely lay-up scatter leaves anything for it to explain, nor it could come near the best model known, it is done.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.criticism.likelihood import square_beside
+from geomdrap.effects import make
+
+if TYPE_CHECKING:
+    from geomdrap.criticism.experiment import Experiment
+    from geomdrap.criticism.model import Fitted
+    from geomdrap.fishnet import Parameter
+
+Whiten = Callable[[np.ndarray], np.ndarray]
+
+GROWING = (0.3, 1.0, 3.0, 8.0)  # of the typical size of what grows from 0: where the search looks first
+FALLING = (0.3, 0.6, 0.9, 1.2, 1.5)  # of the way from a parameter's greatest value to its typical one, likewise
+THRESHOLDS = (0.95, 0.8, 0.65, 0.5)  # of the largest shear
+SHAPES = (0.05, 0.2, 0.4, 0.6)  # of the range of a parameter that does nothing alone
+HALVINGS = 3  # of the gaps between probes
+SAME = 3.0  # of chi-square: probes this close do equally well
+NOTHING = 1e-6  # of the noise: less is no signature
+BELOW_TOP = (0.85, 0.6)  # of the largest shear: thresholds at which to look once
+LEAST_GAIN = 4.0  # of chi-square under the likely scatter: less is not looked into
+
+
+@dataclass(frozen=True, eq=False)
+class Glance:
+    """One look at an effect: the best of a few ``values`` of its parameters and their ``signature`` (m,).
+
+    ``gain`` is what any multiple of the signature explains under the likely scatter, of chi-square; ``after`` the
+    chi-square under the noise alone that it would leave.
+    """
+
+    values: np.ndarray
+    signature: np.ndarray
+    gain: float
+    after: float
+
+
+def glance(
+    experiment: Experiment,
+    predict: Callable[[np.ndarray], np.ndarray],
+    whiten: Whiten,
+    likely: Whiten,
+    base: Fitted,
+    effect: str,
+) -> Glance:
+    """Look at an effect once; ``likely`` whitens with the base's likeliest scatter, ``whiten`` with the noise."""
+    residual = np.nan_to_num(base.fit.residual)
+    there = experiment.measured - base.fit.residual
+    seen = []
+    for values in _first_looks(make(effect).parameters, experiment.top_shear):
+        signature = np.nan_to_num(predict(np.append(base.values, values)) - there)
+        both = np.column_stack([base.fit.slopes, signature])
+        before, after = (square_beside(likely(residual), likely(s)) for s in (base.fit.slopes, both))
+        seen.append(Glance(values, signature, before - after, square_beside(whiten(residual), whiten(both))))
+    return max(seen, key=lambda one: one.gain)
+
+
+def _first_looks(own: Sequence[Parameter], top: float) -> list[np.ndarray]:
+    """Values at which to look once; ``top`` is the largest shear, degrees, below which thresholds act."""
+    each = []
+    for q in own:
+        if q.neutral == q.typical or q.typical < q.neutral == q.high:
+            each.append([_clip(f * top, q) for f in BELOW_TOP] if q.unit == "deg" else [q.typical])
+        elif len(own) == 1 and q.low < q.neutral:
+            each.append([q.typical, 2.0 * q.neutral - q.typical])
+        else:
+            each.append([q.typical])
+    return [np.array(values) for values in product(*each)]
+
+
+def start_values(
+    experiment: Experiment,
+    predict: Callable[[np.ndarray], np.ndarray],
+    whiten: Whiten,
+    base: Fitted,
+    effect: str,
+) -> np.ndarray:
+    """Values to begin with: the best of a few probes of the new effect."""
+    own = make(effect).parameters
+    p = len(base.values)
+    neutral = np.array([q.neutral for q in own])
+    residual = np.nan_to_num(base.fit.residual)
+    there = experiment.measured - base.fit.residual
+    shifts = whiten(base.fit.slopes)
+
+    def signature(values: np.ndarray) -> np.ndarray:
+        return np.nan_to_num(predict(np.append(base.values, values)) - there)
+
+    alone = []
+    for k, q in enumerate(own):
+        values = neutral.copy()
+        values[k] = q.typical
+        alone.append(signature(values))
+    sizes = [float(np.abs(whiten(s)).max()) for s in alone]
+    acting = [k for k in range(len(own)) if sizes[k] > NOTHING]
+    if len(acting) == len(own) and (len(own) > 1 or own[0].low < own[0].neutral < own[0].high):
+        # both signs, a slope at nothing: the linear fit is the start
+        slopes = np.column_stack([s / (q.typical - q.neutral) for s, q in zip(alone, own, strict=True)])
+        step = np.linalg.lstsq(np.column_stack([shifts, whiten(slopes)]), whiten(residual), rcond=1e-9)[0]
+        values = _within(neutral + step[p:], own)
+        return np.append(base.values + step[:p], values)
+
+    def misfit(values: np.ndarray) -> float:
+        return square_beside(whiten(residual - signature(values)), shifts)
+
+    if len(own) == 1:
+        now = square_beside(whiten(residual), shifts)
+        halvings = 1 if make(effect).costly else HALVINGS
+        probes = _probes(own[0], experiment.top_shear)
+        best = np.array([_narrowed(lambda x: misfit(np.array([x])), probes, now, halvings)])
+    else:
+        best = min(
+            (_scaled(shape, own, acting, signature, whiten, residual, shifts) for shape in _shapes(own, acting)),
+            key=misfit,
+        )
+    return _best_place(experiment, predict, whiten, base, best)
+
+
+def _best_place(
+    experiment: Experiment,
+    predict: Callable[[np.ndarray], np.ndarray],
+    whiten: Whiten,
+    base: Fitted,
+    best: np.ndarray,
+) -> np.ndarray:
+    """Values of the base to go with values ``best`` of a new effect: from its own, or from the placement as meant.
+
+    A base without the effect may have gone far astray to make up for it.
+    """
+    shifts = whiten(base.fit.slopes)
+    meant = base.values.copy()
+    meant[:3] = 0.0
+    starts = []
+    for values in (base.values, meant):
+        left = whiten(np.nan_to_num(experiment.measured - predict(np.append(values, best))))
+        step = np.linalg.lstsq(shifts, left, rcond=1e-9)[0]
+        starts.append((square_beside(left, shifts), np.append(values + step, best)))
+    return min(starts, key=lambda start: start[0])[1]
+
+
+def _narrowed(misfit: Callable[[float], float], probes: Sequence[float], now: float, halvings: int) -> float:
+    """The best of the probes; where none is better than ``now``, after halving the gaps beside the best.
+
+    Of probes that do equally well the last is taken: an effect that does nothing up to a threshold begins there.
+    """
+    known = {x: misfit(x) for x in probes}
+    for _ in range(halvings):
+        least = min(known.values())
+        if least < now - SAME:
+            break
+        best = max(x for x, value in known.items() if value <= least + SAME)
+        order = sorted(known)
+        k = order.index(best)
+        for a, b in ((k, k + 1), (k - 1, k)):
+            if a >= 0 and b < len(order):
+                middle = 0.5 * (order[a] + order[b])
+                known[middle] = misfit(middle)
+    return min(known, key=lambda x: known[x])
+
+
+def _probes(own: Parameter, top: float) -> list[float]:
+    """Values of a one-sided parameter where the search looks first; thresholds of shear lie below its ``top``."""
+    if own.typical < own.neutral and own.unit == "deg":
+        return sorted({_clip(f * top, own) for f in THRESHOLDS})
+    factors = GROWING if own.typical > own.neutral else FALLING
+    return sorted({_clip(own.neutral + f * (own.typical - own.neutral), own) for f in factors})
+
+
+def _shapes(own: Sequence[Parameter], acting: Sequence[int]) -> list[np.ndarray]:
+    """Values of the parameters that do nothing alone, over their ranges; the others at their typical sizes."""
+    each = [[q.typical] if k in acting else [q.low + f * (q.high - q.low) for f in SHAPES] for k, q in enumerate(own)]
+    return [np.array(values) for values in product(*each)]
+
+
+def _scaled(
+    shape: np.ndarray,
+    own: Sequence[Parameter],
+    acting: Sequence[int],
+    signature: Callable[[np.ndarray], np.ndarray],
+    whiten: Whiten,
+    residual: np.ndarray,
+    shifts: np.ndarray,
+) -> np.ndarray:
+    """The values with the acting ones as large as the residual wants them, were their signature linear."""
+    column = whiten(signature(shape))
+    factor = float(np.linalg.lstsq(np.column_stack([shifts, column]), whiten(residual), rcond=1e-9)[0][-1])
+    out = shape.copy()
+    for k in acting:
+        out[k] = _clip(own[k].neutral + factor * (shape[k] - own[k].neutral), own[k])
+    return out
+
+
+def _within(values: np.ndarray, own: Sequence[Parameter]) -> np.ndarray:
+    return np.array([_clip(v, q) for v, q in zip(values, own, strict=True)])
+
+
+def _clip(value: float, q: Parameter) -> float:
+    return min(max(float(value), q.low), q.high)

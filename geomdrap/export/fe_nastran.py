@@ -1,0 +1,110 @@
+"""fe.bdf: the ply for Nastran, as the material angle THETA of each shell."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from geomdrap.errors import GeomdrapError
+from geomdrap.export.fe_mesh import Deck
+from geomdrap.export.fe_read_nastran import SHELLS
+from geomdrap.export.map_onto import ElementPly
+from geomdrap.export.whole import write_whole
+
+WIDTH = 8
+LONGEST = 99_999_999
+"""Greatest number that fits into a field."""
+
+
+def write(ply: ElementPly, path: Path, ply_thickness: float | None = None) -> None:
+    """Write the deck: the one that was read with THETA filled in, else nodes and shells in mm.
+
+    Angles count from the side 1-2 of the element (G1 to G2) to the warp, about its normal. ``ply_thickness``
+    mm goes into comments. Raises GeomdrapError if numbers do not fit or the file cannot be written.
+    """
+    check_numbers(ply)
+    body = filled_in(ply, ply.mesh.deck) if ply.mesh.deck is not None else fresh(ply)
+    write_whole(path, "\n".join([*head(ply, ply_thickness), *body]) + "\n")
+
+
+def check_numbers(ply: ElementPly) -> None:
+    """Raise GeomdrapError where a number is longer than a field."""
+    mesh = ply.mesh
+    most = max(int(mesh.element_ids.max()), int(mesh.node_ids.max()))
+    if most > LONGEST:
+        raise GeomdrapError(f"{mesh.source}: number {most} does not fit into the 8 columns of a field; renumber it")
+
+
+def head(ply: ElementPly, ply_thickness: float | None) -> Iterator[str]:
+    """Comments: what this is, and the mean shear and thickness, which the cards have no place for."""
+    on = ply.is_draped
+    factor = ply.thickness[on]
+    yield f"$ Ply on {ply.mesh.source}: THETA runs from side G1-G2 to the warp, about the normal of the element"
+    yield f"$ {int(on.sum())} elements with ply, {int((~on).sum())} without (left as they were)"
+    yield f"$ thickness factor {factor.min():.4f} to {factor.max():.4f}; per element, with the weft, in acp.csv"
+    if ply_thickness is not None:
+        yield f"$ thickness {ply_thickness * factor.min():.4f} to {ply_thickness * factor.max():.4f} mm"
+
+
+def filled_in(ply: ElementPly, deck: Deck) -> Iterator[str]:
+    """The lines of the deck, its shells written anew with their angle; everything else as it was."""
+    theta = ply.side_angle(ply.warp)
+    new = {}
+    for k in np.flatnonzero(ply.is_draped).tolist():
+        first, last = deck.spans[k]
+        fields = list(deck.fields[k])
+        place = SHELLS[deck.names[k]].theta
+        fields += [""] * (place + 1 - len(fields))
+        fields[place] = f"{theta[k] + 0.0:.3f}"
+        new[first] = (last, card(deck.names[k], fields))
+    k = 0
+    while k < len(deck.lines):
+        last, text = new.get(k, (k, [deck.lines[k]]))
+        yield from text
+        k = last + 1
+
+
+def fresh(ply: ElementPly) -> Iterator[str]:
+    """Nodes and shells as small-field cards."""
+    mesh = ply.mesh
+    theta = ply.side_angle(ply.warp)
+    yield "BEGIN BULK"
+    for number, (x, y, z) in zip(mesh.node_ids.tolist(), mesh.points.tolist(), strict=True):
+        yield from card("GRID", [str(number), "", real(x), real(y), real(z)])
+    for k, number in enumerate(mesh.element_ids.tolist()):
+        corners = [str(n) for n in mesh.node_ids[mesh.corners[k][mesh.corners[k] >= 0]].tolist()]
+        angle = f"{theta[k] + 0.0:.3f}" if ply.is_draped[k] else ""
+        name = "CQUAD4" if len(corners) == 4 else "CTRIA3"
+        yield from card(name, [str(number), str(mesh.parts[k]), *corners, angle])
+    yield "ENDDATA"
+
+
+def card(name: str, fields: list[str]) -> list[str]:
+    """A card in small fields, with continuations; fields that are too long are shortened as real numbers."""
+    while fields and not fields[-1]:
+        fields = fields[:-1]
+    words = [word if len(word) <= WIDTH else real(float(word)) for word in fields]
+    lines = []
+    for start in range(0, len(words), 8):
+        first = f"{name:<8}" if start == 0 else f"{'+':<8}"
+        lines.append((first + "".join(f"{word:>8}" for word in words[start : start + 8])).rstrip())
+    return lines
+
+
+def real(value: float) -> str:
+    """A number with a point in at most eight characters, as exactly as they hold it."""
+    if value == 0.0:
+        return "0."
+    for digits in range(8, 0, -1):
+        text = f"{value:.{digits}g}"
+        if "e" in text:
+            mantissa, exponent = text.split("e")
+            text = f"{mantissa if '.' in mantissa else mantissa + '.'}{int(exponent):+d}"
+        elif "." not in text:
+            text += "."
+        text = text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) and len(text) > WIDTH else text
+        if len(text) <= WIDTH:
+            return text
+    raise GeomdrapError(f"{value} does not fit into the 8 columns of a field; move the mesh nearer to the origin")

@@ -1,0 +1,62 @@
+"""Reads the finite element mesh that a ply is mapped onto, by the ending of its name."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+
+from geomdrap.errors import GeomdrapError
+from geomdrap.export.fe_mesh import FeMesh
+
+READERS = {
+    ".inp": "fe_read_abaqus",
+    ".bdf": "fe_read_nastran",
+    ".nas": "fe_read_nastran",
+    ".dat": "fe_read_nastran",
+    ".fem": "fe_read_nastran",
+    ".rad": "fe_read_radioss",
+}
+"""Ending of the file's name → module with ``read(name, lines) -> FeMesh``."""
+
+
+def read_fe_mesh(path: str | Path) -> FeMesh:
+    """Shells of an Abaqus, Nastran, OptiStruct or Radioss deck, in mm, with the deck's own numbers.
+
+    Raises GeomdrapError, in one sentence, for whatever keeps the file from being read.
+    """
+    path = Path(path)
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        known = ", ".join(READERS)
+        raise GeomdrapError(f"{path.name}: a ply is mapped onto meshes in {known} files, not '{path.suffix}'")
+    try:
+        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise GeomdrapError(f"{path} cannot be read ({reason}); check the name of the mesh") from None
+    mesh: FeMesh = import_module(f"geomdrap.export.{reader}").read(path.name, lines)
+    return mesh
+
+
+def number(text: str, name: str, line: int) -> float:
+    """A real number as solvers write it, also ``1.5-3`` and ``1.D5``; blank is 0. Raises GeomdrapError."""
+    word = text.strip().upper().replace("D", "E")
+    if not word:
+        return 0.0
+    sign = max(word.rfind("+"), word.rfind("-"))
+    if sign > 0 and word[sign - 1] not in "E+-":
+        word = f"{word[:sign]}E{word[sign:]}"
+    try:
+        return float(word)
+    except ValueError:
+        raise GeomdrapError(f"{name}, line {line}: '{text.strip()}' is not a number; export the mesh again") from None
+
+
+def whole(text: str, name: str, line: int) -> int:
+    """A whole number. Raises GeomdrapError."""
+    try:
+        return int(text)
+    except ValueError:
+        raise GeomdrapError(
+            f"{name}, line {line}: '{text.strip()}' is not a whole number; export the mesh again"
+        ) from None

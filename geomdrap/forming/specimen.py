@@ -1,0 +1,143 @@
+"""A test specimen: what is held, how it is pulled, and what the machine and the camera read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geomdrap.errors import FormingError
+from geomdrap.forming.cloth import Cloth
+from geomdrap.forming.model import make_model
+from geomdrap.forming.run import Run, drive
+from geomdrap.forming.sheet import Sheet
+from geomdrap.forming.stable_step import SAFETY
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+DAMPING = 12.0
+"""Mass damping times the duration of a run: vibrations fade within a tenth of it."""
+SLOW = 0.02
+"""Share of kinetic energy, from a tenth of the way on, beyond which a run is no longer a slow one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Specimen:
+    """A sheet in grips.
+
+    ``held`` (d,) nodes; ``flow`` (n, 3): by how much each node moves per mm of displacement; for those that are not
+    held only a first guess, at which they start and against which vibrations are damped. ``readers``: for each force
+    that the machine reads, its name and weights (n, 3), which make one number of the reactions.
+    """
+
+    sheet: Sheet
+    cloth: Cloth
+    held: Whole
+    flow: Array
+    readers: dict[str, Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Pulled:
+    """A specimen after its test.
+
+    ``displacement`` (f,) mm; ``forces`` N by the name of the reader, each (f,); ``shear`` (f,) deg in the middle of
+    the specimen; ``kinetic_share`` the largest from a tenth of the way on; ``stopped``: a sentence if the test ended
+    early.
+    """
+
+    specimen: Specimen
+    run: Run
+    displacement: Array
+    forces: dict[str, Array]
+    shear: Array
+    kinetic_share: float
+    stopped: str
+
+    @property
+    def balance_error(self) -> float:
+        """The largest share of energy that was unaccounted for."""
+        return self.run.balance_error
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the user should look at."""
+        said = [self.stopped] if self.stopped else []
+        if self.kinetic_share > SLOW:
+            said.append(
+                f"{100 * self.kinetic_share:.1f} % of the energy is kinetic, so that inertia shows in the forces; "
+                "take more steps"
+            )
+        return said
+
+
+def pull(
+    specimen: Specimen,
+    displacement: float,
+    speed: float,
+    steps: int = 60_000,
+    frames: int = 50,
+    progress: Callable[[float], None] | None = None,
+    damping: float = DAMPING,
+    safety: float = SAFETY,
+) -> Pulled:
+    """Pull ``specimen`` by ``displacement`` mm at ``speed`` mm/min in ``steps`` steps, and read it ``frames`` times.
+
+    Masses are scaled so that the steps are stable. FormingError where a number is out of range.
+    """
+    if not (displacement > 0.0 and speed > 0.0 and np.isfinite(displacement) and np.isfinite(speed)):
+        raise FormingError(f"displacement and speed must be above 0; got {displacement:g} mm and {speed:g} mm/min")
+    if frames < 1 or steps < 4 * frames:
+        raise FormingError(f"{steps} steps are too few for {frames} frames; take at least {4 * frames}")
+    pace = speed / 60.0
+    half = max(1, round(0.5 * steps / frames))
+    duration = displacement / pace
+    step = duration / (2 * half * frames)
+    model = make_model(specimen.sheet, specimen.cloth, step, specimen.held, damping / duration, safety=safety)
+    rest, way = model.sheet.points[model.driven], specimen.flow[model.driven]
+
+    def path(time: float) -> Array:
+        return rest + pace * time * way
+
+    run = drive(model, path, 2 * half * frames, frames, pace * specimen.flow, progress)
+    return _read(specimen, run, pace)
+
+
+def _read(specimen: Specimen, run: Run, pace: float) -> Pulled:
+    forces = {
+        name: np.array([np.sum(weights[run.model.driven] * f.reaction) for f in run.frames])
+        for name, weights in specimen.readers.items()
+    }
+    shear = np.array([middle_shear(specimen.sheet, f.points) for f in run.frames])
+    late = [f.ledger.kinetic_share for f in run.frames[1:] if f.time >= 0.1 * run.frames[-1].time]
+    displacement = pace * np.array([f.time for f in run.frames])
+    return Pulled(specimen, run, displacement, forces, shear, max(late, default=0.0), run.stopped)
+
+
+def gradients(sheet: Sheet, points: Array) -> Array:
+    """Deformation gradient of each triangle (m, 3, 2): images of the unit vectors along warp and weft."""
+    flat, space = sheet.fabric[sheet.triangles], points[sheet.triangles]
+    d = np.stack([flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]], axis=-1)
+    e = np.stack([space[:, 1] - space[:, 0], space[:, 2] - space[:, 0]], axis=-1)
+    return np.asarray(e @ np.linalg.inv(d))
+
+
+def shear_of(gradient: Array) -> Array:
+    """Shear (…,) deg of deformation gradients (…, 3, 2): 90° less the angle between warp and weft."""
+    warp, weft = gradient[..., 0], gradient[..., 1]
+    sine = np.sum(warp * weft, axis=-1) / (np.linalg.norm(warp, axis=-1) * np.linalg.norm(weft, axis=-1))
+    return np.rad2deg(np.arcsin(np.clip(sine, -1.0, 1.0)))
+
+
+def middle_shear(sheet: Sheet, points: Array) -> float:
+    """Shear, deg, of the mean deformation around the middle of the sheet at rest, over about two cells each way."""
+    middle = 0.5 * (sheet.points.min(axis=0) + sheet.points.max(axis=0))
+    away = np.linalg.norm(sheet.points[sheet.triangles].mean(axis=1) - middle, axis=1)
+    reach = 2.0 * np.sqrt(sheet.areas.sum() / sheet.cells)
+    near = away <= max(reach, float(away.min()) * 1.001)
+    weights = (sheet.areas * near)[:, None, None]
+    mean = (gradients(sheet, points) * weights).sum(axis=0) / weights.sum()
+    return float(shear_of(mean))
