@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
     from geomdrap.fields import Drape
 
+THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
+
 
 @click.command()
 @part_argument
@@ -37,6 +39,23 @@ if TYPE_CHECKING:
 @reading_options
 @folder_option("drape", "Folder for the result files; it is made if it is missing.")
 @outputs_option
+@click.option(
+    "--warp-guide",
+    type=click.Path(path_type=Path),
+    metavar="FILE.csv",
+    help="Curve on the part (columns x, y, z) that the warp through the origin follows, in place of --angle.",
+)
+@click.option(
+    "--weft-guide",
+    type=click.Path(path_type=Path),
+    metavar="FILE.csv",
+    help="The same for the weft; with both the ply is laid from where they cross.",
+)
+@click.option(
+    "--plies",
+    metavar="DEG,DEG,...",
+    help="A stack instead of one ply: angles from --angle, the tool's side first, each ply draped on those below it.",
+)
 @element_options
 @click.option(
     "--paper",
@@ -51,6 +70,7 @@ if TYPE_CHECKING:
 def drape(
     folder: Path,
     outputs: tuple[str, ...],
+    plies: str | None,
     onto: Path | None,
     fe_axis: tuple[float, float, float] | None,
     ply_thickness: float | None,
@@ -70,6 +90,8 @@ def drape(
       geomdrap drape hood.stl
       geomdrap drape hemisphere.stl --origin -5,5,84.4 --angle 45 --pitch 4 -o hemisphere-45
       geomdrap drape hood.stl --origin vertex:120 --blank 800x600 --outputs json,dxf --json
+      geomdrap drape hood.stl --warp-guide spine.csv
+      geomdrap drape hood.stl --plies 0,45,-45,90 --ply-thickness 0.3 -o laminate
       geomdrap drape hood.stl --effect slip:coefficient=0.6 --effect thickness:offset=1.5
       geomdrap drape hood.stl --angle 45 --outputs cut,pdf --paper A3
       geomdrap drape hood.stl --angle 45 --onto hood_fe.inp --ply-thickness 0.3
@@ -81,6 +103,17 @@ def drape(
     from geomdrap.export.report_json import as_dict, is_incomplete
 
     _check_folder(folder, outputs)
+    context = click.get_current_context()
+    if context.get_parameter_source("angle") == ParameterSource.COMMANDLINE:
+        _refuse_guides(asked, "--angle")
+    if plies is not None:
+        from geomdrap.cli.plies import drape_plies
+
+        _refuse_guides(asked, "--plies")
+        if onto is not None or fe_axis is not None:
+            raise click.UsageError("--onto and --fe-axis take one ply: leave --plies out", context)
+        extras = Extras(context.meta.get(COMMAND, ""), None, ply_thickness or THICKNESS, paper)
+        return drape_plies(plies, extras, folder, outputs, strict, as_json, quiet, **asked)
     mesh, outputs = fe_mesh_of(onto, outputs)
     with Progress(quiet) as progress:
         result = compute(progress, lambda: announce_compilation(quiet), **asked)
@@ -121,6 +154,23 @@ def _left_over(folder: Path, files: Mapping[str, Path]) -> Iterator[str]:
         yield f"{', '.join(names)} in {folder} {verb} of an earlier run: remove {them}, or use another folder (-o)"
 
 
+def _refuse_guides(asked: dict[str, Any], other: str) -> None:
+    """Refuse guide curves beside an option that says something else; without that they are taken away."""
+    for name in ("warp_guide", "weft_guide"):
+        if asked[name] is not None:
+            option = "--" + name.replace("_", "-")
+            raise click.UsageError(f"{option} and {other} contradict each other", click.get_current_context())
+        if other == "--plies":
+            del asked[name]
+
+
+def read_guides(**files: Path | None) -> dict[str, Any]:
+    """The points of guide curves by name."""
+    from geomdrap.sweep.origins import read_points
+
+    return {name: read_points(file) for name, file in files.items() if file is not None}
+
+
 def compute(
     progress: Progress,
     before_drape: Callable[[], None] = lambda: None,
@@ -133,6 +183,8 @@ def compute(
     limit_angle: float | None,
     effect_texts: tuple[str, ...] = (),
     model: Path | None = None,
+    warp_guide: Path | None = None,
+    weft_guide: Path | None = None,
     plugins: tuple[Path, ...] = (),
     **drape_options: Any,
 ) -> Drape:
@@ -149,10 +201,11 @@ def compute(
         require_room(surface, asked)
     before_drape()
     reach = (blank[0] / 2, blank[1] / 2) if blank else None
+    guides = read_guides(warp_guide=warp_guide, weft_guide=weft_guide)
 
     def at(pitch: float | None) -> Drape:
         progress.step("Draping")
-        net = gd.drape(surface, pitch=pitch, reach=reach, effects=effects, **drape_options)
+        net = gd.drape(surface, pitch=pitch, reach=reach, effects=effects, **guides, **drape_options)
         progress.step("Evaluating")
         result: Drape = gd.evaluate(net, limit_angle, progress.share)
         return result

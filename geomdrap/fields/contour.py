@@ -8,10 +8,20 @@ from itertools import pairwise
 
 import numpy as np
 
-from geomdrap.geodesic.compiled import kernel
+from geomdrap.geodesic.compiled import inlined, kernel
 
 SAME = 0.1  # cells: corners that agree this closely across an edge are joined in the flat fabric, not cut apart
 TOUCH = 1e-6  # mm or cells: a point this close to a line lies on it
+
+
+@inlined
+def surely_joined(kind: np.ndarray, neighbours: np.ndarray, f: int, k: int) -> bool:
+    """Whether both facets of edge k of facet f lie in the net (kind 1); most do.
+
+    They take the coordinates of their vertices, so that two of them always join.
+    """
+    g = neighbours[f, k]
+    return g >= 0 and kind[f] == 1 and kind[g] == 1
 
 
 @kernel
@@ -40,21 +50,22 @@ def walk_outlines(
     walk = np.empty(3 * m, np.int64)
     begin = np.empty(3 * m + 1, np.int64)
     count = loops = 0
-    for start in range(3 * m):
-        if used[start] or kind[start // 3] == 0:
-            continue
-        if not is_open(at, kind, neighbours, neighbour_edge, start // 3, start % 3):
-            continue
-        begin[loops] = count
-        loops += 1
-        f, k = start // 3, start % 3
-        while not used[3 * f + k]:
-            used[3 * f + k] = True
-            walk[count] = 3 * f + k
-            count += 1
-            k = (k + 1) % 3
-            while not is_open(at, kind, neighbours, neighbour_edge, f, k):
-                f, k = neighbours[f, k], (neighbour_edge[f, k] + 1) % 3
+    for first in range(m):
+        for edge in range(3):
+            if kind[first] == 0 or surely_joined(kind, neighbours, first, edge) or used[3 * first + edge]:
+                continue
+            if not is_open(at, kind, neighbours, neighbour_edge, first, edge):
+                continue
+            begin[loops] = count
+            loops += 1
+            f, k = first, edge
+            while not used[3 * f + k]:
+                used[3 * f + k] = True
+                walk[count] = 3 * f + k
+                count += 1
+                k = (k + 1) % 3
+                while not is_open(at, kind, neighbours, neighbour_edge, f, k):
+                    f, k = neighbours[f, k], (neighbour_edge[f, k] + 1) % 3
     begin[loops] = count
     return walk[:count], begin[: loops + 1]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,7 @@ from geomdrap.fields.flat import flat_pattern
 from geomdrap.fields.result import Areas, BareRegion, Checks, Drape, FlatPattern, ShearStatistics
 from geomdrap.fields.trim import Trimmed, trim
 from geomdrap.fishnet import Status
+from geomdrap.geodesic.compiled import kernel
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -38,7 +40,7 @@ def evaluate(
     )
     trimmed = trim(net, lambda share: progress(0.65 * share))
     warp, weft = unit_directions(trimmed)
-    shear = np.degrees(np.arcsin(np.clip((warp * weft).sum(axis=1), -1.0, 1.0)))
+    shear = sheared(warp, weft)
     faces = _per_face(net, trimmed, warp, weft)
     progress(0.75)
     flat = flat_pattern(net, trimmed, limit)
@@ -84,17 +86,34 @@ def doubts(flat: FlatPattern, checks: Checks, area: Areas) -> tuple[str, ...]:
 
 def unit_directions(trimmed: Trimmed) -> tuple[np.ndarray, np.ndarray]:
     """Unit warp and weft directions (m, 3) of the split facets."""
-    length = np.linalg.norm(trimmed.tangent, axis=2, keepdims=True)
-    unit = trimmed.tangent / np.where(length > 0.0, length, 1.0)
+    unit = unit_vectors(trimmed.tangent.reshape(-1, 3)).reshape(trimmed.tangent.shape)
     return unit[:, 0], unit[:, 1]
+
+
+def sheared(warp: np.ndarray, weft: np.ndarray) -> np.ndarray:
+    """Shear (n,) degrees between unit directions (n, 3)."""
+    sine = warp[:, 0] * weft[:, 0] + warp[:, 1] * weft[:, 1] + warp[:, 2] * weft[:, 2]
+    return np.asarray(np.degrees(np.arcsin(np.clip(sine, -1.0, 1.0))))
+
+
+@kernel
+def unit_vectors(vectors: np.ndarray) -> np.ndarray:
+    """Vectors (n, 3) made unit vectors; those without a length stay as they are."""
+    out = np.empty_like(vectors)
+    for n in range(len(vectors)):
+        x, y, z = vectors[n, 0], vectors[n, 1], vectors[n, 2]
+        length = math.sqrt(x * x + y * y + z * z)
+        scale = 1.0 / length if length > 0.0 else 1.0
+        out[n, 0], out[n, 1], out[n, 2] = scale * x, scale * y, scale * z
+    return out
 
 
 def areas(trimmed: Trimmed) -> Areas:
     """Areas of the part, of the draped part and of the fabric on it."""
     part = float(trimmed.area.sum())
     draped = float((trimmed.area * trimmed.share).sum())
-    a, b, c = trimmed.at.swapaxes(0, 1)
-    flat = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    (au, av), (bu, bv), (cu, cv) = trimmed.at.transpose(1, 2, 0)
+    flat = 0.5 * ((bu - au) * (cv - av) - (bv - av) * (cu - au))
     fabric = float(np.where(trimmed.share > 0.0, flat * trimmed.share, 0.0).sum())
     return Areas(part, draped, fabric, draped / part)
 

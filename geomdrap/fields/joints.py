@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from geomdrap.fields.contour import is_open, walk_outlines
+from geomdrap.fields.contour import is_open, surely_joined, walk_outlines
 from geomdrap.fields.strip import BEYOND, BY_NET
 from geomdrap.geodesic.compiled import kernel
 
@@ -16,7 +16,10 @@ def find_joints(at: np.ndarray, kind: np.ndarray, neighbours: np.ndarray, neighb
     count = 0
     for f in range(len(kind)):
         for k in range(3):
-            if kind[f] > 0 and f < neighbours[f, k] and not is_open(at, kind, neighbours, neighbour_edge, f, k):
+            if kind[f] == 0 or f >= neighbours[f, k]:
+                continue
+            whole = surely_joined(kind, neighbours, f, k)
+            if whole or not is_open(at, kind, neighbours, neighbour_edge, f, k):
                 out[count] = 3 * f + k
                 count += 1
     return out[:count]
@@ -75,6 +78,8 @@ def uneven_vertices(
     for f in range(len(kind)):
         for k in range(3):
             g = neighbours[f, k]
+            if surely_joined(kind, neighbours, f, k):
+                continue
             if kind[f] == 0 or g < f or is_open(at, kind, neighbours, neighbour_edge, f, k):
                 continue
             for n in range(2):

@@ -11,14 +11,14 @@ import math
 
 import numpy as np
 
-from geomdrap.geodesic.compiled import kernel
+from geomdrap.geodesic.compiled import inlined, kernel
 
 ROUNDS = 60
 INSIDE = 1e-6  # cells: rounding at the border between two
 OFF = 0.2  # cells: a point further than this from the patch of its cell is not on it, or the patch cuts a corner
 
 
-@kernel
+@inlined
 def cell_at(valid: np.ndarray, p: float, q: float) -> tuple[int, int]:
     """Cell that holds (p, q), clipped to the lattice."""
     i = min(max(int(math.floor(p)), 0), valid.shape[0] - 1)
@@ -26,7 +26,7 @@ def cell_at(valid: np.ndarray, p: float, q: float) -> tuple[int, int]:
     return i, j
 
 
-@kernel
+@inlined
 def newton_step(
     lattice: np.ndarray, i: int, j: int, s: float, t: float, x: float, y: float, z: float
 ) -> tuple[float, float, float]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.fields.contour import is_open
+from geomdrap.fields.contour import is_open, surely_joined
 from geomdrap.fields.joints import groups
 from geomdrap.fields.strip import BEYOND, BEYOND_NET
 from geomdrap.fishnet import Status
@@ -33,6 +33,8 @@ def seams(at: np.ndarray, kind: np.ndarray, neighbours: np.ndarray, neighbour_ed
     for f in range(len(kind)):
         for k in range(3):
             g = neighbours[f, k]
+            if surely_joined(kind, neighbours, f, k):
+                continue
             if g > f and kind[f] > 0 and kind[g] > 0 and is_open(at, kind, neighbours, neighbour_edge, f, k):
                 found[count] = 3 * f + k
                 count += 1

@@ -13,13 +13,7 @@ JUMP = 0.4  # cells: neighbouring values that differ by this much more than they
 MOST_SHEARED = 12.0  # a cell sheared to 85° is that much shorter across than its sides
 
 
-@kernel
-def unit(v: np.ndarray) -> np.ndarray:
-    """A vector made a unit vector."""
-    return v / math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-
-
-@kernel
+@inlined
 def fits(points: np.ndarray, triangle: np.ndarray, at: np.ndarray, side: float) -> bool:
     """Whether the coordinates (3, 2) of a facet's corners can belong to one sheet of the net."""
     for k in range(3):
@@ -99,43 +93,52 @@ def by_net(
     return at
 
 
-@inlined
-def add_turned(
-    weight: float, v: np.ndarray, ox: float, oy: float, oz: float, normal: np.ndarray, out: np.ndarray
-) -> None:
-    """Turn a vector of the plane across o into that across ``normal`` the shortest way and add it to ``out``."""
-    ax, ay, az = oy * normal[2] - oz * normal[1], oz * normal[0] - ox * normal[2], ox * normal[1] - oy * normal[0]
-    cosine = ox * normal[0] + oy * normal[1] + oz * normal[2]
-    # Rodrigues' rotation, with (1 - cos) / sin² = 1 / (1 + cos); back to back there is no shortest way
-    along = (ax * v[0] + ay * v[1] + az * v[2]) / (1.0 + cosine) if cosine > -0.99 else math.nan
-    out[0] += weight * (cosine * v[0] + ay * v[2] - az * v[1] + ax * along)
-    out[1] += weight * (cosine * v[1] + az * v[0] - ax * v[2] + ay * along)
-    out[2] += weight * (cosine * v[2] + ax * v[1] - ay * v[0] + az * along)
-
-
 @kernel
-def tangents_at(p: float, q: float, yarns: np.ndarray, normal: np.ndarray, side: float, out: np.ndarray) -> None:
+def outward_at_nodes(yarns: np.ndarray) -> np.ndarray:
+    """Unit normals (nu, nv, 3) of the planes of warp and weft ``yarns`` (2, nu, nv, 3); NaN where one is missing."""
+    nu, nv = yarns.shape[1], yarns.shape[2]
+    out = np.empty((nu, nv, 3))
+    for i in range(nu):
+        for j in range(nv):
+            warp, weft = yarns[0, i, j], yarns[1, i, j]
+            x, y = warp[1] * weft[2] - warp[2] * weft[1], warp[2] * weft[0] - warp[0] * weft[2]
+            z = warp[0] * weft[1] - warp[1] * weft[0]
+            size = math.sqrt(x * x + y * y + z * z)
+            out[i, j, 0], out[i, j, 1], out[i, j, 2] = x / size, y / size, z / size
+    return out
+
+
+@inlined
+def tangents_at(
+    p: float, q: float, yarns: np.ndarray, outward: np.ndarray, normal: np.ndarray, side: float, out: np.ndarray
+) -> None:
     """Yarn tangents (2, 3), mm per cell, at (p, q) in the plane across ``normal``.
 
-    The directions ``yarns`` (2, nu, nv, 3) of the four nodes around are turned into that plane one by one, so that
-    a bend between them does not look like shear.
+    The directions ``yarns`` (2, nu, nv, 3) of the four nodes around are turned into that plane one by one, out of
+    those across ``outward`` (nu, nv, 3), so that a bend between them does not look like shear.
     """
     nu, nv = yarns.shape[1:3]
+    nx, ny, nz = normal[0], normal[1], normal[2]
     i = min(max(int(math.floor(p)), 0), nu - 2)
     j = min(max(int(math.floor(q)), 0), nv - 2)
     s, t = min(max(p - i, 0.0), 1.0), min(max(q - j, 0.0), 1.0)
     out[:] = 0.0
     for k in range(i, i + 2):
         for m in range(j, j + 2):
-            warp, weft = yarns[0, k, m], yarns[1, k, m]
-            if math.isnan(warp[0]) or math.isnan(weft[0]):
+            ox, oy, oz = outward[k, m, 0], outward[k, m, 1], outward[k, m, 2]
+            if math.isnan(ox):
                 continue
-            ox, oy = warp[1] * weft[2] - warp[2] * weft[1], warp[2] * weft[0] - warp[0] * weft[2]
-            oz = warp[0] * weft[1] - warp[1] * weft[0]
-            size = math.sqrt(ox * ox + oy * oy + oz * oz)
+            # Rodrigues' rotation, with (1 - cos) / sin² = 1 / (1 + cos); back to back there is no shortest way
+            ax, ay, az = oy * nz - oz * ny, oz * nx - ox * nz, ox * ny - oy * nx
+            cosine = ox * nx + oy * ny + oz * nz
+            turn = 1.0 / (1.0 + cosine) if cosine > -0.99 else math.nan
             weight = (s if k > i else 1 - s) * (t if m > j else 1 - t)
-            add_turned(weight, warp, ox / size, oy / size, oz / size, normal, out[0])
-            add_turned(weight, weft, ox / size, oy / size, oz / size, normal, out[1])
+            for n in range(2):
+                x, y, z = yarns[n, k, m, 0], yarns[n, k, m, 1], yarns[n, k, m, 2]
+                along = (ax * x + ay * y + az * z) * turn
+                out[n, 0] += weight * (cosine * x + ay * z - az * y + ax * along)
+                out[n, 1] += weight * (cosine * y + az * x - ax * z + ay * along)
+                out[n, 2] += weight * (cosine * z + ax * y - ay * x + az * along)
     for n in range(2):
         length = math.sqrt(out[n, 0] ** 2 + out[n, 1] ** 2 + out[n, 2] ** 2)
         for c in range(3):

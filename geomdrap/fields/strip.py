@@ -14,8 +14,8 @@ from heapq import heappop, heappush
 import numpy as np
 
 from geomdrap.fields.gradient import gradient_near, turn_by
-from geomdrap.fields.spread import fits, stretch, tangents_at, unit
-from geomdrap.geodesic.compiled import kernel
+from geomdrap.fields.spread import fits, outward_at_nodes, stretch, tangents_at
+from geomdrap.geodesic.compiled import inlined, kernel
 
 BARE, BY_NET, BEYOND = 0, 1, 2
 IS_BLANK, IS_TOO_NARROW, IS_TOO_SHEARED = 8, 9, 10  # values of Status
@@ -26,28 +26,44 @@ OFF, OFF_SHARE = 0.2, 0.4  # cells, and shares of an edge, by which its end may 
 BEYOND_NET = 2  # cells: corners of the part turned to the yarns stick out by more than one
 
 
+@inlined
+def products(tangent: np.ndarray) -> tuple[float, float, float]:
+    """Products of the tangents (2, 3): first with itself, with the second, second with itself."""
+    aa = ab = bb = 0.0
+    for c in range(3):
+        aa += tangent[0, c] * tangent[0, c]
+        ab += tangent[0, c] * tangent[1, c]
+        bb += tangent[1, c] * tangent[1, c]
+    return aa, ab, bb
+
+
 @kernel
 def can_be(ratio: float, tangent: np.ndarray) -> bool:
     """Whether a facet of the strip can be flat area / area = ``ratio`` under yarns along ``tangent`` (2, 3).
 
     Too large a ratio, or too small a one where the yarns are nearly parallel, makes the spikes in a pattern.
     """
-    sine = (tangent[0] * tangent[1]).sum() / math.sqrt((tangent[0] ** 2).sum() * (tangent[1] ** 2).sum())
+    aa, ab, bb = products(tangent)
+    sine = ab / math.sqrt(aa * bb)
     return ratio < MOST_STRETCH and (ratio > LEAST_STRETCH or abs(sine) < NEARLY_PARALLEL)
 
 
 @kernel
-def agrees(corners: np.ndarray, at: np.ndarray, tangent: np.ndarray, side: float) -> bool:
-    """Whether a facet's corners (3, 3) mm lie where its yarns ``tangent`` (2, 3) lead by its coordinates (3, 2).
+def agrees(points: np.ndarray, triangle: np.ndarray, at: np.ndarray, tangent: np.ndarray, side: float) -> bool:
+    """Whether a facet's corners lie where its yarns ``tangent`` (2, 3) lead by its coordinates (3, 2).
 
     Where two stretches of the net meet at the corner of a box a vertex has coordinates of one of them, which lead
     elsewhere in the facets of the other.
     """
     for k in range(3):
         m = (k + 1) % 3
-        way = corners[m] - corners[k]
-        off = (at[m, 0] - at[k, 0]) * tangent[0] + (at[m, 1] - at[k, 1]) * tangent[1] - way
-        if math.sqrt((off * off).sum()) > OFF * side + OFF_SHARE * math.sqrt((way * way).sum()):
+        dp, dq = at[m, 0] - at[k, 0], at[m, 1] - at[k, 1]
+        length = off = 0.0
+        for c in range(3):
+            way = points[triangle[m], c] - points[triangle[k], c]
+            length += way * way
+            off += (dp * tangent[0, c] + dq * tangent[1, c] - way) ** 2
+        if math.sqrt(off) > OFF * side + OFF_SHARE * math.sqrt(length):
             return False
     return True
 
@@ -57,19 +73,22 @@ def turn_over_edge(
     tangent: np.ndarray, edge: np.ndarray, normal: np.ndarray, beyond: np.ndarray, out: np.ndarray
 ) -> None:
     """Turn tangents (2, 3) of a facet about an edge into the plane of the facet beyond it."""
-    e = unit(edge)
-    here, there = np.cross(normal, e), np.cross(beyond, e)
+    length = math.sqrt(edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2])
+    x, y, z = edge[0] / length, edge[1] / length, edge[2] / length
+    hx, hy, hz = normal[1] * z - normal[2] * y, normal[2] * x - normal[0] * z, normal[0] * y - normal[1] * x
+    tx, ty, tz = beyond[1] * z - beyond[2] * y, beyond[2] * x - beyond[0] * z, beyond[0] * y - beyond[1] * x
     for n in range(2):
-        out[n] = (tangent[n] * e).sum() * e + (tangent[n] * here).sum() * there
+        along = tangent[n, 0] * x + tangent[n, 1] * y + tangent[n, 2] * z
+        across = tangent[n, 0] * hx + tangent[n, 1] * hy + tangent[n, 2] * hz
+        out[n, 0], out[n, 1], out[n, 2] = along * x + across * tx, along * y + across * ty, along * z + across * tz
 
 
 @kernel
 def steps_of(tangent: np.ndarray, way: np.ndarray) -> tuple[float, float]:
     """Components (cells) of a way in the plane of the tangents (2, 3), which are mm per cell."""
-    aa = (tangent[0] * tangent[0]).sum()
-    ab = (tangent[0] * tangent[1]).sum()
-    bb = (tangent[1] * tangent[1]).sum()
-    ar, br = (tangent[0] * way).sum(), (tangent[1] * way).sum()
+    aa, ab, bb = products(tangent)
+    ar = tangent[0, 0] * way[0] + tangent[0, 1] * way[1] + tangent[0, 2] * way[2]
+    br = tangent[1, 0] * way[0] + tangent[1, 1] * way[1] + tangent[1, 2] * way[2]
     det = aa * bb - ab * ab
     if det <= 1e-9 * aa * bb:
         return math.nan, math.nan
@@ -144,17 +163,18 @@ def begin_in_net(
 ) -> int:
     """Set coordinates, kind and tangents of the facets whose corners all lie in the net; returns how many queued."""
     tail = 0
+    outward = outward_at_nodes(yarns)
     for f in range(len(triangles)):
         for k in range(3):
-            at[f, k] = vertex_at[triangles[f, k]]
+            v = triangles[f, k]
+            at[f, k, 0], at[f, k, 1] = vertex_at[v, 0], vertex_at[v, 1]
         p, q = (at[f, 0, 0] + at[f, 1, 0] + at[f, 2, 0]) / 3.0, (at[f, 0, 1] + at[f, 1, 1] + at[f, 2, 1]) / 3.0
         if math.isnan(p) or not fits(points, triangles[f], at[f], side):
             at[f] = np.nan
             continue
-        tangents_at(p, q, yarns, normals[f], side, tangent[f])
-        if math.isnan(tangent[f, 0, 0] + tangent[f, 1, 0]) or not agrees(
-            points[triangles[f]], at[f], tangent[f], side
-        ):
+        tangents_at(p, q, yarns, outward, normals[f], side, tangent[f])
+        led = not math.isnan(tangent[f, 0, 0] + tangent[f, 1, 0])
+        if not led or not agrees(points, triangles[f], at[f], tangent[f], side):
             at[f] = np.nan
             continue
         kind[f] = BY_NET
@@ -199,7 +219,8 @@ def continue_beyond(
     kind, stopped = np.zeros(m, np.uint8), np.zeros(m, np.uint8)
     queue = np.empty(m, np.int64)
     tail = begin_in_net(points, triangles, normals, vertex_at, yarns, side, at, kind, tangent, queue)
-    corners, ends, turned, start = np.empty((3, 3)), np.empty((2, 2)), np.empty((2, 3)), np.empty(2)
+    corners, ends, turned = np.empty((3, 3)), np.empty((2, 2)), np.empty((2, 3))
+    edge, start = np.empty(3), np.empty(2)
     ways = [(0.0, 0)]  # edges 3·facet + edge over which to go on, by how far from the net: the nearest lead best
     ways.pop()
     for n in range(tail):
@@ -213,15 +234,19 @@ def continue_beyond(
         a, b, o = (k + 1) % 3, k, (e + 2) % 3  # corners of f where corners e and e + 1 of g are; g's third
         ends[0], ends[1] = at[f, a], at[f, b]
         for n in range(3):
-            corners[n] = points[triangles[g, (e + n) % 3]]
-        turn_over_edge(tangent[f], corners[0] - corners[1], normals[f], normals[g], turned)
+            v = triangles[g, (e + n) % 3]
+            for c in range(3):
+                corners[n, c] = points[v, c]
+        for c in range(3):
+            edge[c] = corners[0, c] - corners[1, c]
+        turn_over_edge(tangent[f], edge, normals[f], normals[g], turned)
         start[0] = (at[f, 0, 0] + at[f, 1, 0] + at[f, 2, 0]) / 3.0
         start[1] = (at[f, 0, 1] + at[f, 1, 1] + at[f, 2, 1]) / 3.0
         p, q = third_corner(corners, normals[g], ends, start, turned, gradient, tangent[g])
         known = vertex_at[triangles[g, o]]
         at[g, e], at[g, (e + 1) % 3], at[g, o] = ends[0], ends[1], known
         stop = 0
-        if math.isnan(known[0]) or not agrees(points[triangles[g]], at[g], tangent[g], side):
+        if math.isnan(known[0]) or not agrees(points, triangles[g], at[g], tangent[g], side):
             at[g, o, 0], at[g, o, 1] = p, q
             stop = why_not(valid, status, refused, p, q)
         if stop == 0 and not can_be(stretch(points, triangles[g], at[g], side), tangent[g]):

@@ -67,8 +67,10 @@ def trim(net: Net, progress: Callable[[float], None] = lambda _: None) -> Trimme
         share *= _share_in_blank(at, net.reach)
         reason = np.where((kind > 0) & (share == 0.0), np.uint8(Status.BLANK), reason)
         kind = np.where(share > 0.0, kind, 0).astype(np.uint8)
-    at[kind == 0], tangent[kind == 0] = np.nan, np.nan
-    return Trimmed(mesh, at, kind, tangent / net.pitch, area, share, _spread_reasons(reason, mesh.neighbours))
+    bare = np.flatnonzero(kind == 0)
+    at[bare], tangent[bare] = np.nan, np.nan
+    tangent /= net.pitch
+    return Trimmed(mesh, at, kind, tangent, area, share, _spread_reasons(reason, mesh.neighbours))
 
 
 _SPLIT: WeakKeyDictionary[Surface, tuple[float, Refined, np.ndarray]] = WeakKeyDictionary()

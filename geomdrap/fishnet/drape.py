@@ -24,6 +24,7 @@ from geomdrap.fishnet.relax import relaxed
 from geomdrap.fishnet.shear import shears, yarn_directions
 from geomdrap.fishnet.shift import Shift, displaced
 from geomdrap.fishnet.slide import fill_quadrants_sliding, strain_on_axis
+from geomdrap.fishnet.steer import Guides, generator_turns
 from geomdrap.geodesic.mesh import Mesh, mesh_of
 
 if TYPE_CHECKING:
@@ -49,6 +50,8 @@ def drape(
     *,
     reference: Sequence[float] | None = None,
     project: bool = False,
+    warp_guide: Sequence[Sequence[float]] | np.ndarray | None = None,
+    weft_guide: Sequence[Sequence[float]] | np.ndarray | None = None,
 ) -> Net:
     """Drape a fabric over a surface from a seed.
 
@@ -56,7 +59,9 @@ def drape(
     the heading of the warp, degrees counter-clockwise about the normal from ``reference`` (default the part's
     +x); ``pitch`` the side of a cell, mm (chosen from the part if None); ``reach`` half lengths of the blank
     along warp and weft, mm; ``effects`` act before and after (see ``Effect``); ``project`` allows an origin further
-    than a pitch from the surface.
+    than a pitch from the surface. ``warp_guide`` and ``weft_guide``, points (k, 3) mm of curves on the part, steer
+    the generators along them: the origin is then the point of the guide nearest to ``origin``, or where the two
+    cross, and the warp runs along its guide whatever the ``angle``.
     Raises SurfaceError where the part cannot be draped, DrapeError for an impossible seed, heading, pitch or
     blank.
 
@@ -79,10 +84,17 @@ def drape(
     point, moved = seeds.out_of_corner(part, origin, point, mesh, pitch)
     where = said(tool, meant, pitch) if isinstance(origin, str) and origin == "centroid" else ()
     notes = (*notes, *where, *moved)
-    start = _plant(part, point, math.fmod(angle, 360.0), mesh, reference, fabric, shift_with(acting, Shift()))
+    guides = Guides.laid(part, warp_guide, weft_guide, pitch, project)
+    shift = shift_with(acting, Shift())
+    if guides:
+        guides.require_alone(fabric, shift)
+        start, angle, fabric = guides.plant(part, point, mesh, reference, fabric, pitch)
+        notes = (*notes, guides.note)
+    else:
+        start = _plant(part, point, math.fmod(angle, 360.0), mesh, reference, fabric, shift)
     extent = first_extent(part, start, pitch, reach)
     while True:
-        grid = _march_sliding(mesh, start, extent, pitch, fabric)
+        grid = _march_sliding(mesh, start, extent, pitch, fabric, guides)
         larger = grow(extent, grid, pitch)
         if larger == extent:
             break
@@ -91,7 +103,7 @@ def drape(
     net = _as_net(surface, part, start, angle, pitch, reach, fabric, extent, mesh, grid, notes)
     if fabric.relaxes:
         net = relaxed(net)
-    return replace(net_with(acting, net), effects=acting)
+    return replace(net_with(acting, net), effects=acting, guided=guides is not None)
 
 
 def _plant(
@@ -112,29 +124,37 @@ def _plant(
     return meant if shift == Shift() else displaced(shift, meant, plant, mesh, len(part.triangles))
 
 
-def _march_sliding(mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric) -> Grid:
+def _march_sliding(
+    mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric, guides: Guides | None
+) -> Grid:
     """March; where yarns slip, again with the lengths that the cells beside it give to the weft generator."""
-    grid = _march(mesh, start, extent, pitch, fabric, 0.0)
+    grid = _march(mesh, start, extent, pitch, fabric, 0.0, guides)
     if fabric.slip != 0.0:
         for _ in range(AXIS_ROUNDS):
             strain = strain_on_axis(grid, extent.west, fabric.slip)
             if np.abs(strain - grid.node[extent.west, :, STRAIN]).max() < AXIS_STRAIN:
                 break
-            grid = _march(mesh, start, extent, pitch, fabric, strain)
+            grid = _march(mesh, start, extent, pitch, fabric, strain, guides)
     return grid
 
 
 def _march(
-    mesh: Mesh, start: seeds.Seed, extent: Extent, pitch: float, fabric: Fabric, axis: np.ndarray | float
+    mesh: Mesh,
+    start: seeds.Seed,
+    extent: Extent,
+    pitch: float,
+    fabric: Fabric,
+    axis: np.ndarray | float,
+    guides: Guides | None,
 ) -> Grid:
     """Seed, generators (α-nodes), cells (β-nodes), front carried on; ``axis``: strains of the weft generator."""
     grid = empty_grid(*sides(extent, pitch, fabric), start.point, APART)
     i0, j0 = extent.west, extent.south
     grid.node[i0, :, STRAIN] = axis
     weft_rad = math.radians(fabric.weft_angle)
-    curvature = np.array([fabric.curvature_warp, fabric.curvature_weft])
     place_seed(mesh, grid, i0, j0, start.face, *_seed_in_frame(mesh, start), weft_rad)
-    lay_generators(mesh, grid, i0, j0, start.starts, start.places, curvature)
+    turns = generator_turns(mesh, grid, i0, j0, start, fabric, guides)
+    lay_generators(mesh, grid, i0, j0, start.starts, start.places, turns)
     branch_off(mesh, grid, i0, j0, weft_rad)
     if fabric.slip == 0.0:
         fill_quadrants(mesh, grid, i0, j0)

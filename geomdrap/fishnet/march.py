@@ -69,13 +69,12 @@ def lay_yarn(
 
 @kernel
 def lay_generators(
-    mesh: Mesh, grid: Grid, i0: int, j0: int, starts: np.ndarray, places: np.ndarray, curvature: np.ndarray
+    mesh: Mesh, grid: Grid, i0: int, j0: int, starts: np.ndarray, places: np.ndarray, turns: np.ndarray
 ) -> None:
     """Lay the four half-axes, a node of each in turn so that on a closed part none runs all the way round.
 
     ``starts`` (4,) are the faces and ``places`` (4, 4) points and directions with which +u, +v, -u, -v leave;
-    ``curvature`` (2,) 1/mm is how warp and weft generator bend to the left: a turn at each node by the side, by half
-    of it at the seed.
+    ``turns`` (4, n) radians is how each turns to the left at its nodes, the first at the seed; none beyond.
     """
     steps = ((1, 0), (0, 1), (-1, 0), (0, -1))
     going = np.ones(4, np.bool_)
@@ -86,13 +85,13 @@ def lay_generators(
             if not going[a] or not inside(grid, i + di, j + dj):
                 going[a] = False
                 continue
-            turn = (1.0 if a < 2 else -1.0) * curvature[a % 2] * side_between(grid, i, j, di, dj)
+            turn = turns[a, n] if n < turns.shape[1] else 0.0
             if n == 0:
                 x, y, dx, dy = places[a]
                 keep = departure(grid, i, j, di, dj)
                 if turn != 0.0:
-                    dx, dy = turned(dx, dy, 0.5 * turn)
-                    keep = turned(keep[0], keep[1], 0.5 * turn)
+                    dx, dy = turned(dx, dy, turn)
+                    keep = turned(keep[0], keep[1], turn)
                 going[a] = lay_yarn(mesh, grid, i, j, di, dj, starts[a], x, y, dx, dy)
                 if going[a]:  # the seed keeps the right angle: on a vertex its half-axes lie in other frames
                     depart_as(grid, i, j, di, dj, keep[0], keep[1])

@@ -33,7 +33,8 @@ class Net:
     ``warp0``, ``weft0``, ``normal0`` (3,) unit vectors there; ``angle`` degrees; ``pitch`` mm; ``reach`` half
     lengths of the blank, mm. ``sides`` are the lengths of the warp pieces (nu - 1, nv) and weft pieces (nu, nv - 1)
     as they lie, mm; None where all have the length that they have in the flat fabric. ``effects`` are those that
-    acted, in their order. ``notes`` say what was chosen, ``warnings`` what the user should look at.
+    acted, in their order. ``guided`` says that generators follow curves of the user's. ``notes`` say what was chosen,
+    ``warnings`` what the user should look at.
     """
 
     surface: Surface
@@ -59,6 +60,7 @@ class Net:
     shear: np.ndarray
     sides: tuple[np.ndarray, np.ndarray] | None = field(default=None)
     effects: tuple[Effect, ...] = field(default=())
+    guided: bool = field(default=False)
     notes: tuple[str, ...] = field(default=())
     warnings: tuple[str, ...] = field(default=())
 
@@ -72,7 +74,8 @@ class Net:
         """Whether its generators are geodesics at right angles and its shear is what the part's curvature gives."""
         from geomdrap.fishnet.effect import Effect
 
-        return self.fabric.is_geodesic and all(type(e).on_net is Effect.on_net for e in self.effects)
+        plain = self.fabric.is_geodesic and not self.guided
+        return plain and all(type(e).on_net is Effect.on_net for e in self.effects)
 
     def interpolate(self, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Points (n, 3) mm on the surface and shear (n,) degrees at fabric coordinates u, v (n,) mm.

@@ -207,6 +207,11 @@ class Surface:
         return self if mesh is self._mesh else Surface._of(mesh, self.source, self.notes, self.findings)
 
     @cached_property
+    def _pieces(self) -> dict[int, Surface]:
+        """The components that were asked for: what is prepared for one is kept with it."""
+        return {}
+
+    @cached_property
     def _tree(self) -> NearestTree:
         return NearestTree(self.points, self.triangles)
 
@@ -218,8 +223,11 @@ class Surface:
         """The component that contains the face; source_face and vertex_of_input still refer to the input."""
         if self.n_components == 1:
             return self
-        mesh = take_component(self._mesh, int(self.component[face]))
-        return Surface._of(mesh, self.source, self.notes, self.findings)
+        label = int(self.component[face])
+        if label not in self._pieces:
+            mesh = take_component(self._mesh, label)
+            self._pieces[label] = Surface._of(mesh, self.source, self.notes, self.findings)
+        return self._pieces[label]
 
     def numbered_as_welded(self) -> Surface:
         """The same part, with its own vertex numbers taken for those of the input."""

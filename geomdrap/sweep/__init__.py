@@ -5,6 +5,7 @@ from geomdrap.sweep.case import Case, Job
 from geomdrap.sweep.objective import CRITERIA, Objective
 from geomdrap.sweep.optimize import Optimum, optimize
 from geomdrap.sweep.origins import locate_origins
+from geomdrap.sweep.plies import Ply, lay_plies, parse_plies
 from geomdrap.sweep.ranking import ranked
 from geomdrap.sweep.row import Row
 from geomdrap.sweep.run import Sweep, cases_of, run
@@ -15,12 +16,15 @@ __all__ = [
     "Job",
     "Objective",
     "Optimum",
+    "Ply",
     "Row",
     "Sweep",
     "cases_of",
+    "lay_plies",
     "locate_origins",
     "optimize",
     "parse_angles",
+    "parse_plies",
     "ranked",
     "run",
 ]

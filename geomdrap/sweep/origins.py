@@ -71,6 +71,14 @@ def _points(text: str) -> tuple[np.ndarray, list[str]]:
     return _table(content, text)
 
 
+def read_points(file: Path) -> np.ndarray:
+    """Points (n, 3) mm of a CSV file with columns x, y, z. Raises SweepError where it cannot be read."""
+    try:
+        return _table(file.read_text(encoding="utf-8-sig"), str(file))[0]
+    except (OSError, UnicodeDecodeError) as error:
+        raise SweepError(f"{file} cannot be read: {getattr(error, 'strerror', None) or 'it is no text'}") from error
+
+
 def _table(content: str, file: str) -> tuple[np.ndarray, list[str]]:
     """The columns x, y, z of a table with a header; lines that are empty or begin with # are passed over."""
     lines = [(n, line) for n, line in enumerate(content.splitlines(), 1) if line.strip() and line.lstrip()[0] != "#"]
@@ -80,7 +88,7 @@ def _table(content: str, file: str) -> tuple[np.ndarray, list[str]]:
     if missing:
         raise SweepError(f"{file}: there is no column {', '.join(missing)}; the first line must name x, y, z")
     if len(rows) == 1:
-        raise SweepError(f"{file}: there are no origins under the header")
+        raise SweepError(f"{file}: there are no points under the header")
     columns = [header.index(name) for name in "xyz"]
     names = [f"{file}, line {number}" for number, _ in lines[1:]]
     cells = [[row[k] if k < len(row) else "" for k in columns] for row in rows[1:]]

@@ -70,6 +70,8 @@ def test_options_arrive_as_values(run: Run, asked: dict[str, Any]) -> None:
         "pitch": 2.5,
         "reference": (0.0, 1.0, 0.0),
         "blank": (400.0, 300.0),
+        "warp_guide": None,
+        "weft_guide": None,
         "limit_angle": 40.0,
         "unit": "m",
         "tolerance": 0.1,

@@ -3,7 +3,7 @@ import pytest
 from raw_meshes import box, bumpy, grid, rotation, soup
 
 from geomdrap.errors import SurfaceError
-from geomdrap.surface import Surface
+from geomdrap.surface import Surface, shapes
 
 
 def test_arrays_have_the_promised_types_and_cannot_be_written():
@@ -112,3 +112,13 @@ def test_input_that_is_no_surface_is_refused(points, triangles, words):
     with pytest.raises(SurfaceError, match=words) as caught:
         Surface(points, triangles, source="part.stl")
     assert str(caught.value).startswith("part.stl: ")
+
+
+def test_a_piece_is_made_once_so_that_what_is_prepared_for_it_is_kept():
+    one = shapes.plane(20.0, 20.0, edge=10.0)
+    points, triangles = one.points, one.triangles
+    both = Surface(np.vstack([points, points + [50.0, 0, 0]]), np.vstack([triangles, triangles + len(points)]))
+    first, last = both.only_component(0), both.only_component(len(both.triangles) - 1)
+    assert both.only_component(1) is first
+    assert last is not first
+    assert both.only_component(len(both.triangles) - 1) is last

@@ -94,7 +94,7 @@ def test_an_origin_off_the_part_is_refused_with_its_line_unless_projected(tmp_pa
         ("", "no column x, y, z"),
         ("a,b\n1,2\n", "no column x, y, z"),
         ("x,y\n1,2\n", "no column z"),
-        ("x,y,z\n", "no origins under the header"),
+        ("x,y,z\n", "no points under the header"),
         ("x,y,z\n1,2\n", "line 2: '1,2,' is not three finite numbers"),
         ("x,y,z\n1,2,nan\n", "line 2: '1,2,nan' is not three finite numbers"),
     ],

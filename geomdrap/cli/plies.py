@@ -1,0 +1,85 @@
+"""``geomdrap drape --plies``: a stack of plies instead of one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from geomdrap.export.outputs import Extras
+    from geomdrap.sweep import Ply
+
+
+def drape_plies(
+    plies: str, extras: Extras, folder: Path, outputs: tuple[str, ...], strict: bool, as_json: bool, quiet: bool,
+    **asked: Any,
+) -> int:  # fmt: skip
+    """Drape the plies of a stack, write and print them; the exit code."""
+    from geomdrap.cli.messages import print_json, say
+    from geomdrap.cli.progress import Progress, announce_compilation
+    from geomdrap.export.plies_outputs import as_dict, write_plies
+    from geomdrap.export.report_json import is_incomplete
+    from geomdrap.sweep import lay_plies, parse_plies
+
+    angles, thickness = parse_plies(plies), extras.ply_thickness
+    assert thickness is not None
+    with Progress(quiet) as progress:
+        surface, laid = _read(progress, lambda: announce_compilation(quiet), **asked)
+        progress.step("Draping plies")
+        stack = lay_plies(
+            surface, angles, thickness, **laid, on_ply=lambda ply: progress.share(ply.number / len(angles))
+        )
+        progress.step("Writing")
+        files = write_plies(stack, extras, folder, outputs, progress.share)
+    warnings = [f"ply {ply.number}: {text}" for ply in stack for text in ply.drape.warnings]
+    say(warnings, stack[0].drape.net.notes, quiet)
+    if as_json:
+        print_json(as_dict(stack, thickness, files))
+    elif not quiet:
+        click.echo("\n".join(_summary(stack, thickness, folder if files else None)))
+    return int(strict and any(is_incomplete(ply.drape) for ply in stack))
+
+
+def _read(
+    progress: Any,
+    before_drape: Any,
+    *,
+    part: Path,
+    unit: str,
+    tolerance: float | None,
+    flip: bool,
+    blank: tuple[float, float] | None,
+    effect_texts: tuple[str, ...],
+    model: Path | None,
+    plugins: tuple[Path, ...],
+    **laid: Any,
+) -> tuple[Any, dict[str, Any]]:
+    """The part, and how plies are laid on it."""
+    import geomdrap as gd
+    from geomdrap.cli.acting import effects_of
+
+    effects = effects_of(effect_texts, model, plugins)
+    progress.step("Reading")
+    surface = gd.read_surface(part, unit=unit, tolerance=tolerance, flip=flip)
+    before_drape()
+    reach = (blank[0] / 2, blank[1] / 2) if blank else None
+    return surface, {"reach": reach, "effects": effects, **laid}
+
+
+def _summary(stack: Sequence[Ply], thickness: float, folder: Path | None) -> Iterator[str]:
+    """A line per ply; mm, mm², degrees."""
+    first = stack[0].drape
+    yield f"{first.net.surface.source}, {len(stack)} plies of {thickness:g} mm, pitch {first.net.pitch:g} mm"
+    yield "ply  angle    below     max    95 %    cover      fabric  [°, mm, %, mm²]"
+    for ply in stack:
+        shear, area = ply.drape.statistics, ply.drape.area
+        yield (
+            f"{ply.number:3d} {ply.angle:6.4g} {ply.below[0]:8.3f}{shear.max:8.2f}{shear.p95:8.2f}"
+            f"{100 * area.coverage:9.2f}{area.fabric:12.0f}"
+        )
+    yield f"fabric of all plies {sum(ply.drape.area.fabric for ply in stack):.0f} mm²"
+    if folder:
+        yield f"files: {folder / 'plies.json'}, {folder}/ply-1 to ply-{len(stack)}"

@@ -1,0 +1,145 @@
+"""A stack of plies: each lies on those below, and is as long as the surface that they make."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+from made_parts import bumpy_sheet
+
+import geomdrap as gd
+from geomdrap.cli import cli
+from geomdrap.surface import shapes
+from geomdrap.sweep import lay_plies, parse_plies
+from geomdrap.sweep.plies import thickness_factor
+
+
+def test_on_a_plate_every_ply_is_the_same_and_lies_one_thickness_higher() -> None:
+    plies = lay_plies(shapes.plane(edge=20.0), [0.0, 45.0, 0.0], 0.3, pitch=10.0)
+    for k, ply in enumerate(plies):
+        assert np.nanmax(np.abs(ply.drape.net.points[..., 2] - 0.3 * k)) < 1e-9
+        assert ply.below == pytest.approx((0.3 * k, 0.3 * k))
+        assert ply.drape.statistics.max == pytest.approx(0.0, abs=1e-6)
+        assert ply.drape.area.fabric == pytest.approx(plies[0].drape.area.fabric)
+    assert np.array_equal(plies[0].drape.net.u, plies[2].drape.net.u)
+
+
+def test_the_first_ply_is_the_plain_drape() -> None:
+    part = bumpy_sheet()
+    ply = lay_plies(part, [30.0], 0.2, angle=10.0, pitch=8.0)[0]
+    plain = gd.drape(part, angle=40.0, pitch=8.0)
+    assert np.array_equal(ply.drape.net.points, plain.points, equal_nan=True)
+    assert ply.tool is part
+
+
+def test_on_a_cylinder_the_fabric_grows_as_the_radius_does() -> None:
+    tube = shapes.cylinder(100.0, 200.0, edge=4.0)
+    up = np.sign((tube.normals * (tube.points[tube.triangles].mean(axis=1) * [0, 1, 1])).sum(axis=1).mean())
+    plies = lay_plies(tube, [0.0, 90.0, 45.0], 2.0, pitch=8.0)
+    for k, ply in enumerate(plies):
+        assert ply.drape.area.fabric == pytest.approx(plies[0].drape.area.fabric * (1 + up * 0.02 * k), rel=2e-3)
+        assert ply.drape.statistics.p95 < 0.1
+
+
+def test_on_a_sphere_plies_lie_on_spheres_thicker_where_they_shear() -> None:
+    radius, thickness = 100.0, 1.0
+    part = shapes.sphere_cap(radius, 50.0, edge=4.0)
+    first, second, third = lay_plies(part, [0.0, 0.0, 0.0], thickness, pitch=6.0)
+    at = second.drape.net
+    away = np.linalg.norm(at.points, axis=2)
+    pole = np.unravel_index(np.nanargmax(at.points[..., 2]), at.points.shape[:2])
+    assert away[pole] == pytest.approx(radius + thickness, abs=0.03)
+    factor = thickness_factor(first)
+    shear = np.degrees(np.arccos(1.0 / np.maximum(factor, 1.0)))
+    assert shear.max() == pytest.approx(first.drape.statistics.max, abs=3.0)
+    raised = np.linalg.norm(second.tool.points, axis=1) - np.linalg.norm(part.points, axis=1)
+    assert raised == pytest.approx(thickness * factor, abs=2e-3)
+    assert third.below[1] > third.below[0] > 2.0 * thickness
+
+
+def test_where_a_ply_is_bare_it_adds_nothing() -> None:
+    ply = lay_plies(shapes.plane(300.0, 200.0, edge=10.0), [0.0, 0.0], 0.5, reach=(50.0, 50.0), pitch=10.0)[1]
+    away = np.abs(ply.tool.points[:, :2]).max(axis=1)
+    assert ply.tool.points[away < 39.0, 2] == pytest.approx(0.5)
+    assert ply.tool.points[away > 61.0, 2] == pytest.approx(0.0)
+
+
+def test_plies_on_one_piece_of_a_part_leave_the_others_as_they_are() -> None:
+    one = shapes.plane(100.0, 100.0, edge=20.0)
+    both = gd.Surface(
+        np.vstack([one.points, one.points + [500.0, 0.0, 0.0]]),
+        np.vstack([one.triangles, one.triangles + len(one.points)]),
+    )
+    ply = lay_plies(both, [0.0, 0.0], 0.5, origin=(0.0, 0.0, 0.0), pitch=10.0)[1]
+    left = ply.tool.points[:, 0] < 200.0
+    assert ply.tool.points[left, 2] == pytest.approx(0.5)
+    assert ply.tool.points[~left, 2] == pytest.approx(0.0)
+
+
+def test_a_hollow_that_plies_fill_up_is_named() -> None:
+    part = shapes.sphere_cap(10.0, 60.0, edge=1.0).flipped()  # the ply lies inside
+    with pytest.raises(gd.DrapeError, match=r"curved more tightly than ply \d+ is thick"):
+        lay_plies(part, [0.0] * 4, 6.0, pitch=1.0)
+
+
+@pytest.mark.parametrize("thickness", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_thickness_that_is_not_positive_is_refused(thickness: float) -> None:
+    with pytest.raises(gd.DrapeError, match="thickness of a ply must be a positive number"):
+        lay_plies(bumpy_sheet(), [0.0], thickness)
+
+
+def test_plies_are_read_in_their_order_and_may_come_again() -> None:
+    assert parse_plies("0,45,-45, 90,0") == (0.0, 45.0, -45.0, 90.0, 0.0)
+    for text in ("", "0,,90", "up", "nan", "1_0"):
+        with pytest.raises(gd.DrapeError, match="0,45,-45,90"):
+            parse_plies(text)
+
+
+@pytest.fixture
+def command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Result]:
+    """Drape a small saddle with options."""
+    monkeypatch.chdir(tmp_path)
+    CliRunner().invoke(cli, ["sample", "saddle", "--facets", "1500"], catch_exceptions=False)
+    return lambda *more: CliRunner().invoke(
+        cli, ["drape", "saddle.stl", "--pitch", "15", *map(str, more)], catch_exceptions=False
+    )
+
+
+def test_the_command_writes_a_folder_per_ply(command: Callable[..., Result], tmp_path: Path) -> None:
+    result = command("--plies", "0,45,-45", "--ply-thickness", 0.4, "--angle", 10, "--json", "--outputs", "json,dxf")
+    assert result.exit_code == 0, result.output
+    document = json.loads(result.stdout)
+    assert document["schema"] == "geomdrap.plies/1"
+    assert [ply["angle"] for ply in document["plies"]] == [10.0, 55.0, -35.0]
+    assert [ply["ply_angle"] for ply in document["plies"]] == [0.0, 45.0, -45.0]
+    assert document["plies"][2]["below"]["mean"] > 0.8
+    assert document["fabric"] == pytest.approx(sum(ply["area"]["fabric"] for ply in document["plies"]))
+    for number in (1, 2, 3):
+        folder = tmp_path / "drape" / f"ply-{number}"
+        assert sorted(path.name for path in folder.iterdir()) == ["drape.json", "flat.dxf"]
+        own = json.loads((folder / "drape.json").read_text())
+        assert own["angle"] == document["plies"][number - 1]["angle"]
+    assert json.loads((tmp_path / "drape" / "plies.json").read_text())["plies"][0]["ply_angle"] == 0.0
+
+
+def test_the_summary_has_a_line_per_ply(command: Callable[..., Result]) -> None:
+    lines = command("--plies", "0,90", "--outputs", "none").stdout.splitlines()
+    assert [line.split()[:2] for line in lines if line.lstrip()[:1].isdigit()] == [["1", "0"], ["2", "90"]]
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        (("--plies", "0,up"), "'up' is not a number of degrees"),
+        (("--plies", "0", "--ply-thickness", "0"), "0 is not a finite number above 0"),
+        (("--plies", "0,90", "--fe-axis", "1,0,0"), "take one ply: leave --plies out"),
+    ],
+)
+def test_bad_plies_are_said(command: Callable[..., Result], asked: tuple[str, ...], words: str) -> None:
+    result = command(*asked)
+    assert result.exit_code == 2
+    assert words in result.stderr
