@@ -16,7 +16,7 @@ SMOOTH = {  # the part, the seed, and its fine pitch, mm
     "cone beside its tip": (lambda: shapes.cone(0.5, 100.0, 2.0, sectors=24), (-30.0, -24.0, -18.0), 2.0),
     "crowned L": (lambda: shapes.l_shape(300.0, 150.0, 300.0, 2.0), "centroid", 4.0),
     "double dome": (lambda: shapes.double_dome(edge=2.0), "centroid", 2.0),
-    "hood": (lambda: shapes.car_hood(edge=8.0), "centroid", 8.0),
+    "hood": (lambda: shapes.car_hood(edge=8.0), (33.34, -0.31, 23.12), 8.0),
     "bracket": (lambda: shapes.bracket(edge=2.0), "centroid", 2.0),
 }
 MESH = 0.07  # degrees: below, the facets show rather than the pitch
