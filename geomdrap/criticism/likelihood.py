@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from typing import TypeVar
 
 import numpy as np
 
@@ -38,6 +38,23 @@ class Scatter:
 NO_SCATTER = Scatter()
 
 
+Key = TypeVar("Key")
+Value = TypeVar("Value")
+COVARIANCES, FACTORS = 2, 32  # kept: some 10 MB each at 400 points
+
+
+def kept(store: dict[Key, Value], key: Key, make: Callable[[], Value], most: int) -> Value:
+    """An entry of ``store``, made if it is not there; the one asked for longest ago goes where there are more.
+
+    A cache on methods would hold its object in a circle, and gigabytes with it until that is looked for.
+    """
+    value = store.pop(key) if key in store else make()
+    store[key] = value
+    while len(store) > most:
+        del store[next(iter(store))]
+    return value
+
+
 @dataclass(frozen=True, eq=False)
 class Residuals:
     """A model's linearised fit: ``residual`` (m,) and ``slopes`` (m, p) of all its parameters."""
@@ -60,8 +77,14 @@ class Judge:
         self.lengths = correlation_lengths(at[mask.any(axis=1)])
         # what no shift along the part can change keeps its own noise and stays out of the dense algebra
         self.shifted = np.concatenate([np.full(mask[:, c].sum(), shifts(name)) for c, name in enumerate(channels)])
-        self._covariance = lru_cache(2)(self._make_covariance)
-        self._factor = lru_cache(64)(self._make_factor)
+        self._covariances: dict[tuple[float, Smoothness], np.ndarray] = {}
+        self._factors: dict[Scatter, tuple[np.ndarray, float]] = {}
+
+    def _covariance(self, length: float, kind: Smoothness) -> np.ndarray:
+        return kept(self._covariances, (length, kind), lambda: self._make_covariance(length, kind), COVARIANCES)
+
+    def _factor(self, scatter: Scatter) -> tuple[np.ndarray, float]:
+        return kept(self._factors, scatter, lambda: self._make_factor(scatter), FACTORS)
 
     def _make_covariance(self, length: float, kind: Smoothness) -> np.ndarray:
         seen = [c for c, name in enumerate(self.channels) if shifts(name)]
