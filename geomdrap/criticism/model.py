@@ -151,7 +151,8 @@ def add_effect(
     seen = None
     if slow and likely is not None:
         seen = glance(experiment, predict, whiten, likely, base, effect)
-        if seen.gain < LEAST_GAIN or (kind.costly and _hopeless(whiten, base, seen.after, least)):
+        explained = kind.costly and is_noise(least, len(experiment.measured))  # else one look is too little
+        if seen.gain < LEAST_GAIN or (explained and _hopeless(whiten, base, seen.after, least)):
             return _not_fitted(model, base, seen)
     start = start_values(experiment, predict, whiten, base, effect, seen)
     low, high = model.bounds

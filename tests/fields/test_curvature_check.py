@@ -24,7 +24,7 @@ MESH = 0.07  # degrees: below, the facets show rather than the pitch
 
 def residual(part, origin, pitch):
     checks = gd.evaluate(gd.drape(part, origin, 20.0, pitch, project=True)).checks
-    assert checks.edge_error < 1e-9
+    assert checks.edge_error < 5e-9  # to which a cell is closed, see SETTLED in fishnet/cell.py
     return checks.curvature_residual
 
 
