@@ -74,12 +74,13 @@ def draw_part(axes, drape, colours, view):
     toward = np.array([np.cos(up) * np.cos(round_z), np.cos(up) * np.sin(round_z), np.sin(up)])
     p = net.points + 1.5 * net.pitch * toward  # so that a cell is drawn after the facets under it
     cells = np.stack([p[:-1, :-1], p[1:, :-1], p[1:, 1:], p[:-1, 1:]], axis=2)[net.cell_valid]
-    facets = part.points[part.triangles]
+    # With as many corners as a cell: matplotlib pads shorter polygons with what the memory holds, and scales by it.
+    facets = part.points[part.triangles[:, [0, 1, 2, 2]]]
     shades = colours.to_rgba(np.abs(drape.face_shear))
     shades[np.isnan(drape.face_shear)] = 0.8, 0.8, 0.8, 1.0
     axes.add_collection3d(
         Poly3DCollection(
-            [*facets, *cells],
+            np.concatenate([facets, cells]),
             facecolors=np.vstack([shades, np.zeros((len(cells), 4))]),
             edgecolors=np.vstack([shades, np.tile([0.0, 0.0, 0.0, 0.35], (len(cells), 1))]),
             linewidths=0.3,

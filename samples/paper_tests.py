@@ -79,9 +79,7 @@ def rows(angles, speeds, knit):
         ratios = [[at(curves[v], d) / at(curves[20.0], d) for v in (40.0, 80.0)] for d in (3.0, 12.0, 45.0)]
         yield (
             "speed influences the first phase considerably (figure 7: 20, 40, 80 mm/min)",
-            "F40/F20 and F80/F20 "
-            + ", ".join(f"{a:.3f}/{b:.3f}" for a, b in ratios)
-            + " at 3, 12, 45 mm",
+            "F40/F20 and F80/F20 " + ", ".join(f"{a:.3f}/{b:.3f}" for a, b in ratios) + " at 3, 12, 45 mm",
             f"Table 1 read as {words}; straight yarns",
         )
     straight = speeds["table"][20.0]
