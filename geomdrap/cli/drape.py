@@ -13,6 +13,7 @@ from geomdrap.cli.elements import fe_mesh_of, ply_on
 from geomdrap.cli.lazy import COMMAND
 from geomdrap.cli.options import (
     cloth_options,
+    cut_option,
     effect_options,
     element_options,
     folder_option,
@@ -36,6 +37,7 @@ THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
 @seed_options
 @cloth_options
 @effect_options
+@cut_option
 @reading_options
 @folder_option("drape", "Folder for the result files; it is made if it is missing.")
 @outputs_option
@@ -91,6 +93,7 @@ def drape(
       geomdrap drape hemisphere.stl --origin -5,5,84.4 --angle 45 --pitch 4 -o hemisphere-45
       geomdrap drape hood.stl --origin vertex:120 --blank 800x600 --outputs json,dxf --json
       geomdrap drape hood.stl --warp-guide spine.csv
+      geomdrap drape box.stl --cut corner-1.csv --cut corner-2.csv
       geomdrap drape hood.stl --plies 0,45,-45,90 --ply-thickness 0.3 -o laminate
       geomdrap drape hood.stl --effect slip:coefficient=0.6 --effect thickness:offset=1.5
       geomdrap drape hood.stl --angle 45 --outputs cut,pdf --paper A3
@@ -179,6 +182,7 @@ def compute(
     unit: str,
     tolerance: float | None,
     flip: bool,
+    cuts: tuple[Path, ...] = (),
     blank: tuple[float, float] | None,
     limit_angle: float | None,
     effect_texts: tuple[str, ...] = (),
@@ -191,11 +195,12 @@ def compute(
     """Read, drape and evaluate; ``drape_options`` go to `geomdrap.drape` as they are."""
     import geomdrap as gd
     from geomdrap.cli.acting import effects_of
+    from geomdrap.cli.part import read_part
     from geomdrap.cli.pitch import finer_where_coarse, require_room
 
     effects = effects_of(effect_texts, model, plugins)
     progress.step("Reading")
-    surface = gd.read_surface(part, unit=unit, tolerance=tolerance, flip=flip)
+    surface = read_part(part, unit, tolerance, flip, cuts)
     asked = drape_options.pop("pitch", None)
     if asked is not None:
         require_room(surface, asked)

@@ -9,6 +9,7 @@ import click
 
 from geomdrap.cli.options import (
     cloth_options,
+    cut_option,
     effect_options,
     folder_option,
     json_option,
@@ -47,6 +48,7 @@ from geomdrap.cli.values import Names
 @objective_option
 @place_options
 @resume_option
+@cut_option
 @reading_options
 @folder_option("optimize", "Folder for the result files; it is made if it is missing.")
 @click.option(

@@ -47,6 +47,19 @@ def reading_options(function: F) -> F:
     return function
 
 
+def cut_option(function: F) -> F:
+    """Add --cut FILE.csv, lines along which the part is cut."""
+    return click.option(
+        "--cut",
+        "cuts",
+        type=_path(),
+        multiple=True,
+        metavar="FILE.csv",
+        help="Line on the part (columns x, y, z) that the ply does not pass: a cut, or a dart where its sides draw "
+        "apart in the flat pattern. May be given more than once.",
+    )(function)
+
+
 def seed_options(function: F) -> F:
     """Add where and how the ply starts: --origin, --angle, --reference, --project."""
     for option in (

@@ -51,6 +51,7 @@ def _read(
     unit: str,
     tolerance: float | None,
     flip: bool,
+    cuts: tuple[Path, ...] = (),
     blank: tuple[float, float] | None,
     effect_texts: tuple[str, ...],
     model: Path | None,
@@ -58,12 +59,12 @@ def _read(
     **laid: Any,
 ) -> tuple[Any, dict[str, Any]]:
     """The part, and how plies are laid on it."""
-    import geomdrap as gd
     from geomdrap.cli.acting import effects_of
+    from geomdrap.cli.part import read_part
 
     effects = effects_of(effect_texts, model, plugins)
     progress.step("Reading")
-    surface = gd.read_surface(part, unit=unit, tolerance=tolerance, flip=flip)
+    surface = read_part(part, unit, tolerance, flip, cuts)
     before_drape()
     reach = (blank[0] / 2, blank[1] / 2) if blank else None
     return surface, {"reach": reach, "effects": effects, **laid}

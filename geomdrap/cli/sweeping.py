@@ -116,6 +116,7 @@ def prepare(
     unit: str,
     tolerance: float | None,
     flip: bool,
+    cuts: tuple[Path, ...],
     pitch: float | None,
     blank: tuple[float, float] | None,
     limit_angle: float | None,
@@ -129,15 +130,15 @@ def prepare(
     scheduler: str | None,
 ) -> Prepared:
     """Read what the options name, and refuse what of them is wrong before anything is draped."""
-    import geomdrap as gd
     from geomdrap.cli.acting import effects_of
+    from geomdrap.cli.part import read_part
     from geomdrap.cli.progress import announce_compilation
     from geomdrap.sweep import Job, Objective
 
     Objective.parse(objective)
     effects = tuple(effects_of(effect_texts, model, plugins))
     progress.step("Reading")
-    surface = gd.read_surface(part, unit=unit, tolerance=tolerance, flip=flip)
+    surface = read_part(part, unit, tolerance, flip, cuts)
     surface.require_drapable()
     announce_compilation(quiet)
     reach = (blank[0] / 2, blank[1] / 2) if blank else None

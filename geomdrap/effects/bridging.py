@@ -64,6 +64,11 @@ def _split(surface: Surface, longest: float) -> Surface:
     from geomdrap.fields.refine import refine
     from geomdrap.surface import Surface
 
+    if surface.cuts:
+        raise EffectError(
+            f"effect bridging: the facets of {surface.source} are too large for a radius of {2 * longest:g} mm, and "
+            "splitting them would close its cuts; use a finer mesh in the hollows, or a larger radius"
+        )
     many = len(surface.triangles) + 2.0 * surface.area / (0.25 * longest**2)
     if many > MOST_FACETS:
         raise EffectError(

@@ -83,7 +83,7 @@ def drape(
     mesh = mesh_of(part.lidded, SPREAD * pitch)
     point, moved = seeds.out_of_corner(part, origin, point, mesh, pitch)
     where = said(tool, meant, pitch) if isinstance(origin, str) and origin == "centroid" else ()
-    notes = (*notes, *where, *moved)
+    notes = (*notes, *where, *moved, *_cuts(tool))
     guides = Guides.laid(part, warp_guide, weft_guide, pitch, project)
     shift = shift_with(acting, Shift())
     if guides:
@@ -171,6 +171,12 @@ def _require_cells(grid: Grid, surface: Surface, pitch: float) -> None:
             f"no cell of {pitch:g} mm closes on {surface.source} from this origin and heading: use a smaller pitch, "
             "or move the origin away from the rim and out of corners (--origin x,y,z)"
         )
+
+
+def _cuts(surface: Surface) -> tuple[str, ...]:
+    """A note on the lines that the part is cut along."""
+    names, lengths = [name for name, _ in surface.cuts], [length for _, length in surface.cuts]
+    return (f"the part is cut along {', '.join(names)}: {sum(lengths):.4g} mm",) if names else ()
 
 
 def unit_hint(surface: Surface) -> tuple[str, ...]:

@@ -18,7 +18,8 @@ class Prepared:
     """A mesh made ready: arrays as in Surface, and what was done to get there.
 
     bad_edges (h,) half-edges 3 f + k at non-manifold edges, edge by edge; twisted (n_components,) not
-    orientable; doubled (m,) faces that had a twin; slender (m,) heights as shares of the longest edges.
+    orientable; doubled (m,) faces that had a twin; slender (m,) heights as shares of the longest edges; cuts names
+    and lengths [mm] of the lines that it was cut along.
     """
 
     points: Floats
@@ -36,6 +37,7 @@ class Prepared:
     bow_ties: Floats
     tolerance: float
     counts: dict[str, int]
+    cuts: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass
@@ -70,9 +72,7 @@ def prepare(points: Floats, triangles: Ints, source: str) -> Prepared:
 
 def _drop_collapsed_and_doubles(corners: Ints, n: int, counts: dict[str, int]) -> _Faces:
     """Keep the faces with three different corners, each once; count the others."""
-    distinct = (
-        (corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])
-    )
+    distinct = (corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])
     number = np.flatnonzero(distinct)
     corners = np.ascontiguousarray(corners[number])
     twin = topology.repeated_faces(corners, n)
@@ -84,9 +84,7 @@ def _drop_collapsed_and_doubles(corners: Ints, n: int, counts: dict[str, int]) -
     return _Faces(np.ascontiguousarray(corners[single]), number[single], doubled[single])
 
 
-def _connect(
-    points: Floats, faces: _Faces, first: Ints, tolerance: float, counts: dict[str, int]
-) -> Prepared:
+def _connect(points: Floats, faces: _Faces, first: Ints, tolerance: float, counts: dict[str, int]) -> Prepared:
     """Neighbours, components, orientation, one vertex per fan, and the vertices numbered anew."""
     corners, n = faces.corners, len(points)
     order, start = topology.sorted_edges(corners, n)
@@ -161,6 +159,7 @@ def take_component(whole: Prepared, label: int) -> Prepared:
         bow_ties=whole.bow_ties,
         tolerance=whole.tolerance,
         counts=whole.counts,
+        cuts=whole.cuts,
     )
 
 

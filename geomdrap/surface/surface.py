@@ -10,6 +10,7 @@ import numpy as np
 
 from geomdrap.errors import SurfaceError
 from geomdrap.surface import defects, lids, topology, unfold
+from geomdrap.surface.cut import cut_along
 from geomdrap.surface.findings import Findings
 from geomdrap.surface.inspection import component_sums, inspect
 from geomdrap.surface.nearest import Nearest, NearestTree
@@ -30,6 +31,7 @@ SHOWN = (
 )
 #: sizes [mm] between which squares and cubes of lengths keep their digits
 SIZES = 1e-9, 1e12
+CUT_OFF = 0.01  # of the part's diagonal: a line to cut along that lies further off is not meant for it
 
 
 class Surface:
@@ -189,9 +191,7 @@ class Surface:
     @cached_property
     def centroid(self) -> Floats:
         """Centre of the area (3,) mm; it need not lie on the surface."""
-        _, area, center = component_sums(
-            self.points, self.triangles, self.areas, self.component, self.n_components
-        )
+        _, area, center = component_sums(self.points, self.triangles, self.areas, self.component, self.n_components)
         return _frozen((center * (area / self.area)[:, None]).sum(axis=0))[0]
 
     @cached_property
@@ -239,6 +239,31 @@ class Surface:
         mesh = replace(self._mesh, points=np.array(points, dtype=np.float64, order="C"))
         return Surface._of(mesh, self.source, self.notes, self.findings)
 
+    def cut(self, points: Any, name: str = "the cut") -> Surface:
+        """The same part with a slit along a line through points (k, 3) mm, which a ply does not cross.
+
+        Between its points the line follows the section of the part along the normals there. ``name`` is how messages
+        call it. Raises SurfaceError for fewer than two points, points further from the part than a hundredth of its
+        diagonal, and a line that does not run over the part.
+        """
+        line = _line(points, name)
+        near = self.nearest(line)
+        far = int(near.distance.argmax())
+        if near.distance[far] > CUT_OFF * self.diagonal:
+            x, y, z = line[far]
+            raise SurfaceError(
+                f"{name} leaves {self.source}: ({x:.6g}, {y:.6g}, {z:.6g}) lies {near.distance[far]:.4g} mm off; "
+                "draw it on the part, and check its unit (mm)"
+            )
+        mesh, length = cut_along(self._mesh, near.point, near.face, self.normals[near.face], name)
+        mesh = replace(mesh, cuts=(*mesh.cuts, (name, length)))
+        return Surface._of(mesh, self.source, self.notes, self.findings)
+
+    @property
+    def cuts(self) -> tuple[tuple[str, float], ...]:
+        """Names and lengths [mm] of the lines that the part was cut along."""
+        return self._mesh.cuts
+
     def doubted(self, hint: str) -> Surface:
         """The same part with a hint on its unit among its findings."""
         return Surface._of(self._mesh, self.source, self.notes, replace(self.findings, unit_hint=hint))
@@ -250,6 +275,20 @@ class Surface:
     def require_drapable(self) -> None:
         """Raise SurfaceError, with positions, where the part is not a surface that a ply can lie on."""
         defects.require_drapable(self._mesh, self.source)
+
+
+def _line(points: Any, name: str) -> Floats:
+    """Points (k, 3) of a line, those that repeat the one before left out."""
+    try:
+        line = np.asarray(points, dtype=np.float64)
+    except (TypeError, ValueError):
+        line = np.empty(0)
+    if line.ndim != 2 or line.shape[1] != 3 or not np.isfinite(line).all():
+        raise SurfaceError(f"{name} must be points (k, 3) in mm, finite numbers x, y, z")
+    line = line[np.concatenate([[True], (np.diff(line, axis=0) != 0.0).any(axis=1)])] if len(line) else line
+    if len(line) < 2:
+        raise SurfaceError(f"{name} must have two different points at least")
+    return line
 
 
 def _frozen(*arrays: Any) -> Any:

@@ -1,0 +1,60 @@
+"""--cut: lines that a ply does not pass."""
+
+import json
+
+import pytest
+from made_parts import open_box
+
+from geomdrap.surface import Surface
+
+SIZE = (100.0, 80.0, 60.0)
+
+
+@pytest.fixture
+def box(tmp_path):
+    """An open box in the folder where commands run, and a line up each of its four upright edges."""
+    import trimesh
+
+    part: Surface = open_box(5.0, SIZE)
+    trimesh.Trimesh(part.points, part.triangles, process=False).export(tmp_path / "box.stl")
+    low, high = part.bounds
+    corners = [(x, y) for x in (low[0], high[0]) for y in (low[1], high[1])]
+    for n, (x, y) in enumerate(corners):
+        (tmp_path / f"corner-{n}.csv").write_text(f"x,y,z\n{x},{y},{low[2]}\n{x},{y},{high[2]}\n")
+    return [argument for n in range(4) for argument in ("--cut", f"corner-{n}.csv")]
+
+
+def test_a_box_cut_at_its_corners_is_covered_without_shear(run, box):
+    result = run("drape", "box.stl", "--pitch", "4", "--origin", "12,7,30", "--json", "--outputs", "json", *box)
+    assert result.exit_code == 0
+    drape = json.loads(result.stdout)
+    assert drape["shear"]["max"] < 1e-6
+    assert drape["area"]["coverage"] == pytest.approx(1.0, abs=1e-9)
+    assert drape["area"]["fabric"] == pytest.approx(drape["area"]["part"], rel=1e-9)
+    assert any("cut along corner-0.csv, corner-1.csv" in note for note in drape["notes"])
+
+
+def test_sweeps_drape_the_part_as_it_is_cut(run, box):
+    options = ("--angles", "0,20", "--pitch", "4", "-j", "1", "--json", "--outputs", "json")
+    rows = json.loads(run("sweep", "box.stl", *options, *box).stdout)["rows"]
+    assert all(row["max_shear"] < 1e-6 and row["coverage"] > 0.9999 for row in rows)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("x,y,z\n0,0,500\n0,10,500\n", "lies"),
+        ("x,y,z\n0,0,0\n", "two different points"),
+        ("a,b\n1,2\n", "x, y, z"),
+        (None, "line.csv"),
+    ],
+    ids=["off the part", "one point", "other columns", "no file"],
+)
+def test_a_line_that_is_none_says_so(run, box, tmp_path, text, words):
+    if text is not None:
+        (tmp_path / "line.csv").write_text(text)
+    result = run("drape", "box.stl", "--cut", "line.csv")
+    assert result.exit_code == 2
+    assert words in result.stderr
+    assert "line.csv" in result.stderr
+    assert not (tmp_path / "drape").exists()
