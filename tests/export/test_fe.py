@@ -365,6 +365,13 @@ def test_parts_without_shells_may_use_the_same_numbers(tmp_path):
     np.testing.assert_allclose(mesh.points, POINTS, atol=1e-6)
 
 
+@pytest.mark.parametrize("opening", ["*END PART\n", "*ASSEMBLY, NAME=A\n", "*END INSTANCE\n"])
+def test_the_reference_points_of_an_assembly_move_no_node_of_the_part_before_it(tmp_path, opening):
+    assembly = f"{opening}*NODE\n1001, 9., 9., 900.\n*END ASSEMBLY\n"
+    mesh = written(tmp_path, "m.inp", f"*PART, NAME=SHELL\n{GOOD_INP}{assembly}")
+    np.testing.assert_allclose(mesh.points, POINTS, atol=1e-6)
+
+
 @pytest.mark.parametrize(
     ("name", "text", "kinds"),
     [
