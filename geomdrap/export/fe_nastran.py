@@ -9,6 +9,7 @@ import numpy as np
 
 from geomdrap.errors import GeomdrapError
 from geomdrap.export.fe_mesh import Deck
+from geomdrap.export.fe_read import number
 from geomdrap.export.fe_read_nastran import SHELLS
 from geomdrap.export.map_onto import ElementPly
 from geomdrap.export.whole import write_whole
@@ -32,7 +33,7 @@ def write(ply: ElementPly, path: Path, ply_thickness: float | None = None) -> No
 def check_numbers(ply: ElementPly) -> None:
     """Raise GeomdrapError where a number is longer than a field."""
     mesh = ply.mesh
-    most = max(int(mesh.element_ids.max()), int(mesh.node_ids.max()))
+    most = max(int(numbers.max()) for numbers in (mesh.element_ids, mesh.node_ids, mesh.parts))
     if most > LONGEST:
         raise GeomdrapError(f"{mesh.source}: number {most} does not fit into the 8 columns of a field; renumber it")
 
@@ -54,7 +55,7 @@ def filled_in(ply: ElementPly, deck: Deck) -> Iterator[str]:
     new = {}
     for k in np.flatnonzero(ply.is_draped).tolist():
         first, last = deck.spans[k]
-        fields = list(deck.fields[k])
+        fields = [fitted(word, ply.mesh.source, first + 1) for word in deck.fields[k]]
         place = SHELLS[deck.names[k]].theta
         fields += [""] * (place + 1 - len(fields))
         fields[place] = f"{theta[k] + 0.0:.3f}"
@@ -71,26 +72,32 @@ def fresh(ply: ElementPly) -> Iterator[str]:
     mesh = ply.mesh
     theta = ply.side_angle(ply.warp)
     yield "BEGIN BULK"
-    for number, (x, y, z) in zip(mesh.node_ids.tolist(), mesh.points.tolist(), strict=True):
-        yield from card("GRID", [str(number), "", real(x), real(y), real(z)])
-    for k, number in enumerate(mesh.element_ids.tolist()):
+    for node, (x, y, z) in zip(mesh.node_ids.tolist(), mesh.points.tolist(), strict=True):
+        yield from card("GRID", [str(node), "", real(x), real(y), real(z)])
+    for k, element in enumerate(mesh.element_ids.tolist()):
         corners = [str(n) for n in mesh.node_ids[mesh.corners[k][mesh.corners[k] >= 0]].tolist()]
         angle = f"{theta[k] + 0.0:.3f}" if ply.is_draped[k] else ""
         name = "CQUAD4" if len(corners) == 4 else "CTRIA3"
-        yield from card(name, [str(number), str(mesh.parts[k]), *corners, angle])
+        yield from card(name, [str(element), str(mesh.parts[k]), *corners, angle])
     yield "ENDDATA"
 
 
 def card(name: str, fields: list[str]) -> list[str]:
-    """A card in small fields, with continuations; fields that are too long are shortened as real numbers."""
+    """A card in small fields, with continuations."""
     while fields and not fields[-1]:
         fields = fields[:-1]
-    words = [word if len(word) <= WIDTH else real(float(word)) for word in fields]
     lines = []
-    for start in range(0, len(words), 8):
+    for start in range(0, len(fields), 8):
         first = f"{name:<8}" if start == 0 else f"{'+':<8}"
-        lines.append((first + "".join(f"{word:>8}" for word in words[start : start + 8])).rstrip())
+        lines.append((first + "".join(f"{word:>8}" for word in fields[start : start + 8])).rstrip())
     return lines
+
+
+def fitted(word: str, name: str, line: int) -> str:
+    """A field of the deck ``name`` in at most eight characters. Raises GeomdrapError where it is no number."""
+    if len(word) <= WIDTH:
+        return word
+    return str(int(word)) if word.isdigit() else real(number(word, name, line))
 
 
 def real(value: float) -> str:

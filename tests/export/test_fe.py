@@ -23,7 +23,7 @@ import geomdrap as gd
 from geomdrap.errors import GeomdrapError
 from geomdrap.export import fe_abaqus, fe_acp, fe_nastran, fe_optistruct, fe_radioss
 from geomdrap.export.fe_mesh import mesh_of_part
-from geomdrap.export.fe_read import read_fe_mesh
+from geomdrap.export.fe_read import number, read_fe_mesh
 from geomdrap.export.map_onto import map_onto
 from geomdrap.surface import shapes
 
@@ -179,8 +179,8 @@ def test_the_nastran_deck_is_the_same_but_for_theta(flat, tmp_path):
     old = [line for line in before.splitlines() if not line.startswith("CQUAD4")]
     new = [line for line in after.splitlines() if not line.startswith(("CQUAD4", "$ "))]
     assert new == [line for line in old if not line.startswith("$ ")]
-    for number, card in nastran_theta(after).items():
-        was = nastran_theta(before)[number]
+    for element, card in nastran_theta(after).items():
+        was = nastran_theta(before)[element]
         assert card[:7] == was[:7]
         assert float(card[8]) == float(was[8]), "the offset stays"
 
@@ -240,9 +240,9 @@ def test_the_angle_of_the_optistruct_drape_counts_from_the_axis_of_the_element(
     ply = map_onto(flat, written(tmp_path, "m.fem", deck), axis)
     lines = [line for line in out(fe_optistruct, ply, tmp_path).splitlines() if not line.startswith("$")]
     assert fixed_fields(lines[0]) == ["DRAPE", "1"]
-    for line, number in zip(lines[1:], ply.mesh.element_ids.tolist(), strict=True):
+    for line, of_mesh in zip(lines[1:], ply.mesh.element_ids.tolist(), strict=True):
         plus, kind, element, factor, angle = fixed_fields(line)
-        assert (plus, kind, element) == ("+", "ELEM", str(number))
+        assert (plus, kind, element) == ("+", "ELEM", str(of_mesh))
         assert float(factor) == pytest.approx(1.0)
         assert float(angle) == pytest.approx(expected, abs=1e-3)
 
@@ -398,10 +398,33 @@ def test_numbers_too_long_for_a_field_are_refused(flat, tmp_path):
             module.write(ply, tmp_path / "out")
 
 
+def large_field_triangle(part="7", zoffset="0.5"):
+    """A deck with one triangle in large fields, which hold sixteen characters."""
+    nodes = "GRID,1,,0.,0.,0.\nGRID,2,,30.,0.,0.\nGRID,3,,30.,30.,0.\n"
+    return f"{nodes}{'CTRIA3*':<8}{11:>16}{part:>16}{1:>16}{2:>16}\n{'*':<8}{3:>16}{'':>16}{zoffset:>16}\n"
+
+
+def test_a_long_real_without_an_e_is_shortened_as_the_number_that_it_is(flat, tmp_path):
+    ply = map_onto(flat, written(tmp_path, "m.bdf", large_field_triangle(zoffset="1.2345678-3")))
+    (fields,) = nastran_theta(out(fe_nastran, ply, tmp_path)).values()
+    assert number(fields[7], "", 0) == pytest.approx(1.2345678e-3, abs=5e-8)  # five digits
+
+
+def test_a_property_too_long_for_a_field_is_refused(flat, tmp_path):
+    ply = map_onto(flat, written(tmp_path, "m.bdf", large_field_triangle(part="123456789")))
+    with pytest.raises(GeomdrapError, match=r"m\.bdf: number 123456789 does not fit into the 8 columns"):
+        fe_nastran.write(ply, tmp_path / "out")
+
+
+def test_a_long_word_that_is_no_number_is_refused_with_its_line(flat, tmp_path):
+    ply = map_onto(flat, written(tmp_path, "m.bdf", large_field_triangle(zoffset="1.2345678x")))
+    with pytest.raises(GeomdrapError, match=r"m\.bdf, line 4: '1\.2345678x' is not a number"):
+        fe_nastran.write(ply, tmp_path / "out")
+
+
 @pytest.mark.parametrize("value", [0.0, 1.0, -474.892456, 0.000123456, -0.5, 12345678.9, -1.5e-7, 3e10, 99999.5])
 def test_reals_fit_into_eight_columns_and_come_back(value):
     from geomdrap.export.fe_nastran import real
-    from geomdrap.export.fe_read import number
 
     text = real(value)
     assert len(text) <= 8
