@@ -58,7 +58,7 @@ def filled_in(ply: ElementPly, deck: Deck) -> Iterator[str]:
         fields = [fitted(word, ply.mesh.source, first + 1) for word in deck.fields[k]]
         place = SHELLS[deck.names[k]].theta
         fields += [""] * (place + 1 - len(fields))
-        fields[place] = f"{theta[k] + 0.0:.3f}"
+        fields[place] = degrees(theta[k])
         new[first] = (last, card(deck.names[k], fields))
     k = 0
     while k < len(deck.lines):
@@ -76,7 +76,7 @@ def fresh(ply: ElementPly) -> Iterator[str]:
         yield from card("GRID", [str(node), "", real(x), real(y), real(z)])
     for k, element in enumerate(mesh.element_ids.tolist()):
         corners = [str(n) for n in mesh.node_ids[mesh.corners[k][mesh.corners[k] >= 0]].tolist()]
-        angle = f"{theta[k] + 0.0:.3f}" if ply.is_draped[k] else ""
+        angle = degrees(theta[k]) if ply.is_draped[k] else ""
         name = "CQUAD4" if len(corners) == 4 else "CTRIA3"
         yield from card(name, [str(element), str(mesh.parts[k]), *corners, angle])
     yield "ENDDATA"
@@ -91,6 +91,11 @@ def card(name: str, fields: list[str]) -> list[str]:
         first = f"{name:<8}" if start == 0 else f"{'+':<8}"
         lines.append((first + "".join(f"{word:>8}" for word in fields[start : start + 8])).rstrip())
     return lines
+
+
+def degrees(angle: float) -> str:
+    """An angle in the three decimals that a field holds of any, without a negative zero."""
+    return f"{round(angle, 3) + 0.0:.3f}"
 
 
 def fitted(word: str, name: str, line: int) -> str:
