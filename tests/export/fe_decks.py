@@ -82,6 +82,12 @@ def fixed_fields(line):
     return [line[k : k + 8].strip() for k in range(0, len(line), 8)]
 
 
+def nastran_theta(text):
+    """{element: (name, fields)} of the shells in small fields."""
+    cards = [fixed_fields(line) for line in text.splitlines() if line.startswith(("CQUAD4", "CTRIA3"))]
+    return {int(card[1]): card for card in cards}
+
+
 def turned(vectors, about, degrees):
     """Vectors (k, 3) turned about unit axes (k, 3) by angles (k,), after Rodrigues."""
     angle = np.radians(degrees)[:, None]
