@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +27,8 @@ def write(ply: ElementPly, path: Path, ply_thickness: float | None = None) -> No
     """
     check_numbers(ply)
     body = filled_in(ply, ply.mesh.deck) if ply.mesh.deck is not None else fresh(ply)
-    write_whole(path, "\n".join([*head(ply, ply_thickness), *body]) + "\n")
+    text = "\n".join([*head(ply, ply_thickness), *body]) + "\n"
+    write_whole(path, text.encode("utf-8", errors="surrogateescape"))  # bytes of the user's comments as they were
 
 
 def check_numbers(ply: ElementPly) -> None:
@@ -59,12 +60,20 @@ def filled_in(ply: ElementPly, deck: Deck) -> Iterator[str]:
         place = SHELLS[deck.names[k]].theta
         fields += [""] * (place + 1 - len(fields))
         fields[place] = degrees(theta[k])
-        new[first] = (last, card(deck.names[k], fields))
+        new[first] = (last, [*comments(deck.lines[first : last + 1]), *card(deck.names[k], fields)])
     k = 0
     while k < len(deck.lines):
         last, text = new.get(k, (k, [deck.lines[k]]))
         yield from text
         k = last + 1
+
+
+def comments(lines: Sequence[str]) -> Iterator[str]:
+    """What stands behind a dollar sign in the lines of a card."""
+    for line in lines:
+        _, dollar, words = line.partition("$")
+        if dollar:
+            yield dollar + words
 
 
 def fresh(ply: ElementPly) -> Iterator[str]:

@@ -30,10 +30,11 @@ def read_fe_mesh(path: str | Path) -> FeMesh:
         known = ", ".join(READERS)
         raise GeomdrapError(f"{path.name}: a ply is mapped onto meshes in {known} files, not '{path.suffix}'")
     try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+        text = path.read_text(encoding="utf-8", errors="surrogateescape")  # comments may be in any encoding
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise GeomdrapError(f"{path} cannot be read ({reason}); check the name of the mesh") from None
+    lines = text.removesuffix("\n").split("\n")  # not splitlines, which splits at form feeds too
     mesh: FeMesh = import_module(f"geomdrap.export.{reader}").read(path.name, lines)
     return mesh
 

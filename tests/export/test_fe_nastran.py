@@ -46,6 +46,18 @@ def test_the_nastran_deck_is_the_same_but_for_theta(flat, tmp_path):
         assert float(card[8]) == float(was[8]), "the offset stays"
 
 
+def test_comments_of_the_deck_stay_byte_for_byte_also_within_cards(flat, tmp_path):
+    before = b"$ Fl\xe4che, Werkzeug N\xb0 3\n$ page\x0cCTRIA3 of another page\n" + large_field_triangle().encode()
+    before = before.replace(b"\n*  ", b" $ behind\n$ between \xfc\n\n*  ")
+    (tmp_path / "m.bdf").write_bytes(before)
+    fe_nastran.write(map_onto(flat, read_fe_mesh(tmp_path / "m.bdf")), tmp_path / "out")
+    after = (tmp_path / "out").read_bytes()
+    shell = after.index(b"CTRIA3  ")
+    assert after[after.index(b"$ Fl") : shell] == before[: before.index(b"CTRIA3*")] + b"$ behind\n$ between \xfc\n"
+    assert b"$" not in after[shell:]
+    assert not after.endswith(b"\n\n"), "no line is added at the end"
+
+
 def test_free_fields_continuations_and_second_order_shells_keep_what_they_had(flat, tmp_path):
     deck = """BEGIN BULK
 GRID,1,,0.,0.,0.
