@@ -49,3 +49,12 @@ def ply_on(
     from geomdrap.export.map_onto import map_onto
 
     return map_onto(result, mesh if mesh is not None else mesh_of_part(result.net.surface), axis)
+
+
+def notes_on(elements: ElementPly | None, outputs: tuple[str, ...]) -> list[str]:
+    """Sentences on what is doubtful about the ply on the mesh, and what an output lacks of it."""
+    if elements is None:
+        return []
+    from geomdrap.export.fe_nastran import losses
+
+    return [*elements.notes(), *(losses(elements) if "nastran" in outputs else ())]

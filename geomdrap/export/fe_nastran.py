@@ -20,7 +20,9 @@ LONGEST = 99_999_999
 
 
 def write(ply: ElementPly, path: Path, ply_thickness: float | None = None) -> None:
-    """Write the deck: the one that was read with THETA filled in, else nodes and shells in mm.
+    """Write the deck: a Nastran deck that was read with THETA filled in, else one of nodes and shells in mm.
+
+    The latter has shells of second order by their corners alone (`losses`).
 
     Angles count from the side 1-2 of the element (G1 to G2) to the warp, about its normal. ``ply_thickness``
     mm goes into comments. Raises GeomdrapError if numbers do not fit or the file cannot be written.
@@ -37,6 +39,18 @@ def check_numbers(ply: ElementPly) -> None:
     most = max(int(numbers.max()) for numbers in (mesh.element_ids, mesh.node_ids, mesh.parts))
     if most > LONGEST:
         raise GeomdrapError(f"{mesh.source}: number {most} does not fit into the 8 columns of a field; renumber it")
+
+
+def losses(ply: ElementPly) -> list[str]:
+    """Sentences on what the deck lacks of a mesh of another format, of which it has nodes and shells only."""
+    mesh = ply.mesh
+    beside = len(mesh.node_ids) - len(np.unique(mesh.corners[mesh.corners >= 0]))
+    if mesh.deck is not None or not mesh.is_given or not beside:
+        return []
+    return [
+        f"fe.bdf has the shells of {mesh.source} by their corners alone: its other nodes, {beside:,} of them, as "
+        "in the middle of sides, are there but belong to no element; map onto a Nastran deck to keep them"
+    ]
 
 
 def head(ply: ElementPly, ply_thickness: float | None) -> Iterator[str]:
@@ -77,9 +91,10 @@ def comments(lines: Sequence[str]) -> Iterator[str]:
 
 
 def fresh(ply: ElementPly) -> Iterator[str]:
-    """Nodes and shells as small-field cards."""
+    """Nodes and shells, by their corners, as small-field cards."""
     mesh = ply.mesh
     theta = ply.side_angle(ply.warp)
+    yield from (f"$ {text}" for text in losses(ply))
     yield "BEGIN BULK"
     for node, (x, y, z) in zip(mesh.node_ids.tolist(), mesh.points.tolist(), strict=True):
         yield from card("GRID", [str(node), "", real(x), real(y), real(z)])

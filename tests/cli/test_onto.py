@@ -47,6 +47,14 @@ def test_formats_can_be_named_whatever_the_mesh_is(run: Run, mesh: Path) -> None
     assert sorted(f.name for f in Path("out").iterdir()) == ["fe.fem", "fe.inc"]
 
 
+def test_nodes_that_a_deck_of_another_solver_leaves_loose_are_warned_of(run: Run, mesh: Path) -> None:
+    mesh.write_text("*NODE\n99, 0., 0., 0.\n" + mesh.read_text())
+    for outputs, count in (("nastran", 1), ("optistruct", 0)):
+        done = run("drape", PART, *FAST, outputs, "--onto", mesh, "-o", "out")
+        assert done.exit_code == 0, done.stderr
+        assert done.stderr.count("by their corners alone: its other nodes, 1 of them") == count
+
+
 def test_the_axis_of_ply_angles_can_be_given(run: Run, mesh: Path) -> None:
     angles = []
     for axis in ("1,0,0", "0,1,0"):

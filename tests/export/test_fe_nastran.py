@@ -89,6 +89,32 @@ ENDDATA
     assert read_fe_mesh_of(tmp_path, text).material_angle == pytest.approx([HEADING, HEADING - 90.0], abs=1e-3)
 
 
+SECOND_ORDER = """*NODE
+1, 0., 0., 0.
+2, 30., 0., 0.
+3, 30., 30., 0.
+4, 0., 30., 0.
+5, 15., 0., 0.
+6, 30., 15., 0.
+7, 15., 30., 0.
+8, 0., 15., 0.
+*ELEMENT, TYPE=S8R
+11, 1, 2, 3, 4, 5, 6, 7, 8
+"""
+
+
+def test_second_order_shells_of_another_solver_are_written_by_their_corners_and_that_is_said(flat, tmp_path):
+    ply = map_onto(flat, written(tmp_path, "m.inp", SECOND_ORDER))
+    lines = out(fe_nastran, ply, tmp_path).splitlines()
+    (note,) = fe_nastran.losses(ply)
+    assert "shells of m.inp by their corners alone: its other nodes, 4 of them" in note
+    assert f"$ {note}" in lines
+    assert fixed_fields(next(line for line in lines if line.startswith("CQUAD4")))[:7] == ["CQUAD4", "11", "1", *"1234"]
+    kept = [line for line in SECOND_ORDER.splitlines() if line[0] not in "5678"]
+    first_order = "\n".join(kept).replace("S8R", "S4R").replace(", 5, 6, 7, 8", "")
+    assert fe_nastran.losses(map_onto(flat, written(tmp_path, "n.inp", first_order))) == []
+
+
 def read_fe_mesh_of(tmp_path, text):
     (tmp_path / "again.bdf").write_text(text)
     return read_fe_mesh(tmp_path / "again.bdf")
