@@ -17,6 +17,8 @@ from geomdrap.export.whole import write_whole
 WIDTH = 8
 LONGEST = 99_999_999
 """Greatest number that fits into a field."""
+PLAIN_FROM = 1e-3
+"""Size from which eight characters hold as many digits without an exponent as with one."""
 
 
 def write(ply: ElementPly, path: Path, ply_thickness: float | None = None) -> None:
@@ -130,17 +132,32 @@ def fitted(word: str, name: str, line: int) -> str:
 
 
 def real(value: float) -> str:
-    """A number with a point in at most eight characters, as exactly as they hold it."""
-    if value == 0.0:
-        return "0."
-    for digits in range(8, 0, -1):
-        text = f"{value:.{digits}g}"
-        if "e" in text:
-            mantissa, exponent = text.split("e")
-            text = f"{mantissa if '.' in mantissa else mantissa + '.'}{int(exponent):+d}"
-        elif "." not in text:
-            text += "."
-        text = text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) and len(text) > WIDTH else text
+    """A number with a point in at most eight characters, as exactly as they hold it, with an exponent or without."""
+    text = plain(value)
+    if text and (abs(value) >= PLAIN_FROM or value == 0.0):
+        return text
+    texts = [text for text in (text, with_exponent(value)) if text]
+    if not texts:
+        raise GeomdrapError(f"{value} does not fit into the 8 columns of a field; move the mesh nearer to the origin")
+    return min(texts, key=lambda text: abs(number(text, "", 0) - value))
+
+
+def plain(value: float) -> str:
+    """A number with as many decimals as a field holds, as ``.0012346``, ``-474.892``, ``12.``; else nothing."""
+    before_point = len(str(int(abs(value)))) if abs(value) >= 1.0 else 0
+    for decimals in range(WIDTH - 1 - before_point - (value < 0.0), -1, -1):
+        text = f"{value:#.{decimals}f}"
+        text = text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
+        if len(text) <= WIDTH:  # else it was rounded up to one digit more
+            return text.rstrip("0") if text.strip("-0") != "." else "0."
+    return ""
+
+
+def with_exponent(value: float) -> str:
+    """A number with an exponent without its E, as ``1.2346-3``; nothing where a field does not hold it."""
+    for decimals in range(WIDTH - 3, -1, -1):
+        mantissa, exponent = f"{value:#.{decimals}e}".split("e")
+        text = f"{mantissa.rstrip('0')}{int(exponent):+d}"
         if len(text) <= WIDTH:
             return text
-    raise GeomdrapError(f"{value} does not fit into the 8 columns of a field; move the mesh nearer to the origin")
+    return ""

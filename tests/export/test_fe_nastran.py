@@ -9,6 +9,7 @@ from fe_plies import HEADING, dome, out, written
 
 from geomdrap.errors import GeomdrapError
 from geomdrap.export import fe_nastran
+from geomdrap.export.fe_nastran import real
 from geomdrap.export.fe_read import number, read_fe_mesh
 from geomdrap.export.map_onto import map_onto
 
@@ -144,11 +145,23 @@ def test_a_long_word_that_is_no_number_is_refused_with_its_line(flat, tmp_path):
         fe_nastran.write(ply, tmp_path / "out")
 
 
-@pytest.mark.parametrize("value", [0.0, 1.0, -474.892456, 0.000123456, -0.5, 12345678.9, -1.5e-7, 3e10, 99999.5])
-def test_reals_fit_into_eight_columns_and_come_back(value):
-    from geomdrap.export.fe_nastran import real
+SIZES = 10.0 ** np.arange(-12, 13)
 
+
+@pytest.mark.parametrize("value", [0.0, 1.0, -474.892456, 9999999.6, *(1.23456789 * SIZES), *(-9.87654321 * SIZES)])
+def test_reals_fit_into_eight_columns_and_come_back_as_exactly_as_those_hold_them(value):
     text = real(value)
     assert len(text) <= 8
     assert "." in text
-    assert number(text, "", 0) == pytest.approx(value, rel=6e-4)
+    # the point, a minus, and an exponent's sign and digits leave these many: half of the last is the error
+    power = int(np.floor(np.log10(abs(value)))) if value else 0
+    with_exponent = 7 - (value < 0) - len(f"{power:+d}")
+    whole = 7 - (value < 0)
+    plain = whole if 0 <= power < whole else whole + 1 + power if power < 0 else 0
+    assert abs(number(text, "", 0) - value) <= 0.5001 * 10.0 ** (power + 1 - max(plain, with_exponent))
+
+
+def test_of_two_notations_the_nearer_is_written():
+    assert real(-0.0123456) == "-.012346"  # with an exponent -1.235-2
+    assert real(0.00098765) == "9.8765-4"  # without one .0009877
+    assert real(0.0012345678) == ".0012346"
