@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.errors import GeomdrapError
+from geomdrap.fields.evaluate import unit_vectors
 
 if TYPE_CHECKING:
     from geomdrap.surface import Surface
@@ -72,7 +73,8 @@ class FeMesh:
         """Unit normals (m, 3) by the order of the corners; of quadrilaterals across their diagonals."""
         a, b, c, d = self.points[self.corners].swapaxes(0, 1)
         d = np.where(self.is_quad[:, None], d, a)
-        return unit(np.where(self.is_quad[:, None], np.cross(c - a, d - b), np.cross(b - a, c - a)))
+        across = np.where(self.is_quad[:, None], np.cross(c - a, d - b), np.cross(b - a, c - a))
+        return np.asarray(unit_vectors(across))
 
     @property
     def sides(self) -> Floats:
@@ -90,15 +92,9 @@ class FeMesh:
         return np.where(by_axis[:, None], laid_into(np.nan_to_num(self.material_axis), normals), turned)
 
 
-def unit(vectors: Floats) -> Floats:
-    """Vectors (k, 3) of length one; zero ones stay zero."""
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.asarray(vectors / np.where(length > 0.0, length, 1.0))
-
-
 def laid_into(vectors: Floats, normals: Floats) -> Floats:
     """Vectors (k, 3) projected onto the planes of unit normals (k, 3), of length one."""
-    return unit(vectors - (vectors * normals).sum(axis=1, keepdims=True) * normals)
+    return np.asarray(unit_vectors(vectors - (vectors * normals).sum(axis=1, keepdims=True) * normals))
 
 
 def angle_between(start: Floats, end: Floats, normals: Floats) -> Floats:

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.errors import GeomdrapError
-from geomdrap.export.fe_mesh import FeMesh, Floats, angle_between, laid_into, unit
+from geomdrap.export.fe_mesh import FeMesh, Floats, angle_between, laid_into
 from geomdrap.export.ply_corners import at_corners, barycentric, piece_shear, ply_corners
-from geomdrap.fields.evaluate import unit_directions
+from geomdrap.fields.evaluate import unit_directions, unit_vectors
 from geomdrap.surface.nearest import NearestTree
 
 if TYPE_CHECKING:
@@ -135,13 +135,11 @@ def require_size(mesh: FeMesh, part: Surface) -> float:
 def interpolated(result: Drape, piece: np.ndarray, shares: Floats) -> tuple[Floats, Floats, Floats]:
     """Warp and weft (k, 3) and shear (k,) at shares (k, 3) of the corners of facets cut to the pitch (k,)."""
     joined, _ = ply_corners(result).joined()
-    bare, area = result.trimmed.kind == 0, result.trimmed.area
 
     def field(values: Floats) -> Floats:
-        values = np.where(bare, np.nan, values)
-        return np.asarray((at_corners(values, area, joined)[piece] * shares).sum(axis=1))
+        return np.asarray((at_corners(values, result.trimmed.area, joined)[piece] * shares).sum(axis=1))
 
     both = []
     for directions in unit_directions(result.trimmed):
-        both.append(unit(np.column_stack([field(component) for component in directions.T])))
+        both.append(unit_vectors(np.column_stack([field(component) for component in directions.T])))
     return both[0], both[1], field(piece_shear(result))
