@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.errors import GeomdrapError
-from geomdrap.export.fe_mesh import FeMesh, Floats, angle_between, laid_into
+from geomdrap.export.fe_mesh import FeMesh, Floats, angle_between, laid_into, mesh_of_part
 from geomdrap.export.ply_corners import at_corners, barycentric, piece_shear, ply_corners
 from geomdrap.fields.evaluate import unit_directions, unit_vectors
 from geomdrap.surface.nearest import NearestTree
@@ -79,13 +79,17 @@ class ElementPly:
         ]
 
 
-def map_onto(result: Drape, mesh: FeMesh, axis: tuple[float, float, float] | None = None) -> ElementPly:
+def map_onto(
+    result: Drape, mesh: FeMesh | None = None, axis: tuple[float, float, float] | None = None
+) -> ElementPly:
     """The ply at the centre of each element, read at the nearest point of the part.
 
-    Directions and shear are linear over the facets there (cut to the pitch), and continuous but at creases. An
-    element has no ply where the part is bare, lies further away than a pitch, or is inclined by more than 60°.
-    Raises GeomdrapError where no element has any, or the mesh is in another unit.
+    Without a mesh the part's own facets are the elements. Directions and shear are linear over the facets there (cut
+    to the pitch), and continuous but at creases. An element has no ply where the part is bare, lies further away than
+    a pitch, or is inclined by more than 60°. Raises GeomdrapError where no element has any, or the mesh is in another
+    unit.
     """
+    mesh = mesh if mesh is not None else mesh_of_part(result.net.surface)
     relative = require_size(mesh, result.net.surface)
     trimmed = result.trimmed
     pieces = trimmed.mesh

@@ -128,10 +128,9 @@ def with_elements(result: Drape, chosen: Iterable[Output], extras: Extras) -> Ex
     """Fill in the ply on the part's own facets where an output needs elements and none are given."""
     if extras.elements is not None or not any(output.takes == "elements" for output in chosen):
         return extras
-    from geomdrap.export.fe_mesh import mesh_of_part
     from geomdrap.export.map_onto import map_onto
 
-    return replace(extras, elements=map_onto(result, mesh_of_part(result.net.surface)))
+    return replace(extras, elements=map_onto(result))
 
 
 def _part_of(progress: Callable[[float], None], before: float, weight: float, share: float) -> None:

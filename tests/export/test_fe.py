@@ -22,7 +22,6 @@ from fe_plies import HEADING, dome, out, written
 import geomdrap as gd
 from geomdrap.errors import GeomdrapError
 from geomdrap.export import fe_abaqus, fe_acp, fe_nastran, fe_optistruct, fe_radioss
-from geomdrap.export.fe_mesh import mesh_of_part
 from geomdrap.export.fe_read import read_fe_mesh
 from geomdrap.export.map_onto import map_onto
 
@@ -49,7 +48,7 @@ def test_abaqus_axes_are_yarn_and_element_normal_per_element(cap, tmp_path):
 
 def test_without_a_mesh_the_decks_hold_the_part_itself(cap, tmp_path):
     part = cap.net.surface
-    ply = map_onto(cap, mesh_of_part(part))
+    ply = map_onto(cap)
     for module, name in ((fe_abaqus, "a.inp"), (fe_nastran, "a.bdf")):
         module.write(ply, tmp_path / name)
         mesh = read_fe_mesh(tmp_path / name)
@@ -104,7 +103,7 @@ def test_radioss_drape_has_the_columns_that_the_starter_reads(cap, tmp_path):
 
 
 def test_triangles_are_sh3n_in_radioss(flat, tmp_path):
-    lines = out(fe_radioss, map_onto(flat, mesh_of_part(flat.net.surface)), tmp_path).splitlines()
+    lines = out(fe_radioss, map_onto(flat), tmp_path).splitlines()
     rows = [line for line in lines if not line.startswith(("#", "/", "Ply"))]
     assert {line[:10] for line in rows} == {"SH3N      "}
     assert len(rows) == len(flat.net.surface.triangles)
