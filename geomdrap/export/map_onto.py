@@ -60,6 +60,13 @@ class ElementPly:
         along = np.broadcast_to(np.asarray(self.axis, float), normals.shape)
         return angle_between(laid_into(along, normals), direction, normals)
 
+    @property
+    def axis_words(self) -> str:
+        """What ply angles count from, in words."""
+        if self.axis is None:
+            return "the element's own material axis (its side 1-2 where the mesh names none)"
+        return "({:g}, {:g}, {:g}) laid into the element".format(*self.axis)
+
     def notes(self) -> list[str]:
         """Sentences on what is doubtful: elements without ply, a mesh much smaller than the part."""
         notes = []
@@ -75,7 +82,7 @@ class ElementPly:
         return [
             *notes,
             f"{without:,} of {len(self.is_draped):,} elements of {self.mesh.source} have no ply ({first} ...): the "
-            "part is bare there, or further away than one pitch",
+            "part is bare there, further away than one pitch, or inclined to them by more than 60°",
         ]
 
 

@@ -67,11 +67,18 @@ def tiles(result: Drape) -> str:
         (f"{shear.p95:.2f}°", "on 95 % of the area at most"),
         (percent(shear.over_limit), "of the area over the limit"),
         (area(areas.fabric), "of fabric"),
-        (pattern_size(result).removesuffix(" mm"), "mm, rectangle to cut it from"),
+        pattern_tile(result),
     )
     return '<section class="tiles">' + "".join(
         f'<div class="card tile"><b>{value}</b><span>{words}</span></div>' for value, words in facts
     ) + "</section>"
+
+
+def pattern_tile(result: Drape) -> tuple[str, str]:
+    """The rectangle that the pattern is cut from; that there is none."""
+    if not result.flat.outer:
+        return "none", "flat pattern: no fabric lies on the part"
+    return pattern_size(result).removesuffix(" mm"), "mm, rectangle to cut it from"
 
 
 def pattern_size(result: Drape) -> str:

@@ -102,6 +102,17 @@ def test_radioss_drape_has_the_columns_that_the_starter_reads(cap, tmp_path):
     np.testing.assert_allclose(back, ply.warp, atol=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("axis", "words"),
+    [(None, "the element's own material axis (its side 1-2"), ((0.0, -3.0, 0.5), "(0, -3, 0.5) laid into the element")],
+)
+def test_files_with_angles_say_what_these_count_from(flat, tmp_path, axis, words):
+    ply = map_onto(flat, axis=axis)
+    for module in (fe_optistruct, fe_radioss):
+        (line,) = [line for line in out(module, ply, tmp_path).splitlines() if words in line]
+        assert line.startswith(("$", "#"))
+
+
 def test_triangles_are_sh3n_in_radioss(flat, tmp_path):
     lines = out(fe_radioss, map_onto(flat), tmp_path).splitlines()
     rows = [line for line in lines if not line.startswith(("#", "/", "Ply"))]

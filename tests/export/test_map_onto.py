@@ -61,6 +61,7 @@ def test_elements_beside_above_and_across_the_part_have_no_ply(flat, tmp_path):
     x, y = np.abs(mesh.centers[:, 0]), np.abs(mesh.centers[:, 1])
     np.testing.assert_array_equal(ply.is_draped, (x < 110.0) & (y < 90.0))  # a pitch beyond the rim, 10 mm, is near
     assert "of 100 elements of m.bdf have no ply" in ply.notes()[0]
+    assert "bare there, further away than one pitch, or inclined to them by more than 60°" in ply.notes()[0]
     cards = nastran_theta(out(fe_nastran, ply, tmp_path))
     kept = [n for n, card in cards.items() if card[7] == "77."]
     assert kept == mesh.element_ids[~ply.is_draped].tolist(), "theirs stays as it was"
