@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -120,8 +121,17 @@ def mesh_of_part(surface: Surface) -> FeMesh:
     )
 
 
-def assemble(name: str, nodes: Nodes, elements: Elements, **more: Any) -> FeMesh:
-    """A mesh from what a file holds; ``more`` are its other fields, if it has them.
+def assemble(
+    name: str,
+    nodes: Nodes,
+    elements: Elements,
+    *,
+    others: Iterable[str] = (),
+    material_angle: Floats | None = None,
+    material_axis: Floats | None = None,
+    deck: Deck | None = None,
+) -> FeMesh:
+    """A mesh from what a file holds. Without material angles and axes the side 1-2 is the material's.
 
     Raises GeomdrapError where there are no shells, or one is there twice, names a node that is not there, or has no
     area.
@@ -147,10 +157,10 @@ def assemble(name: str, nodes: Nodes, elements: Elements, **more: Any) -> FeMesh
         element_ids=ids,
         parts=np.array([element[1] for element in elements], np.int64),
         corners=corners,
-        material_angle=more.get("material_angle", np.zeros(m)),
-        material_axis=more.get("material_axis", np.full((m, 3), np.nan)),
-        deck=more.get("deck"),
-        others=tuple(sorted(more.get("others", ()))),
+        material_angle=np.zeros(m) if material_angle is None else material_angle,
+        material_axis=np.full((m, 3), np.nan) if material_axis is None else material_axis,
+        deck=deck,
+        others=tuple(sorted(others)),
     )
     flat = np.abs(mesh.normals).sum(axis=1) == 0.0
     if flat.any():
