@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from geomdrap.cli.elements import fe_mesh_of, ply_on
+from geomdrap.cli.elements import fe_mesh_of, notes_on, ply_on
 from geomdrap.cli.lazy import COMMAND
 from geomdrap.cli.options import (
     cloth_options,
@@ -124,9 +124,8 @@ def drape(
         command = click.get_current_context().meta.get(COMMAND, "")
         elements = ply_on(result, mesh, fe_axis, outputs)
         files = write_all(result, folder, outputs, progress.share, Extras(command, elements, ply_thickness, paper))
-    without = elements.notes() if elements is not None else []
     left = tuple(_left_over(folder, files))
-    say((*result.warnings, *without, *left), result.net.notes, quiet)
+    say((*result.warnings, *notes_on(elements, outputs), *left), result.net.notes, quiet)
     if as_json:
         document = as_dict(result, files)
         print_json({**document, "warnings": [*document["warnings"], *left]})

@@ -14,16 +14,6 @@ if TYPE_CHECKING:
     from geomdrap.export.map_onto import ElementPly
     from geomdrap.fields import Drape
 
-FORMATS = {
-    ".inp": "abaqus",
-    ".bdf": "nastran",
-    ".nas": "nastran",
-    ".dat": "nastran",
-    ".fem": "optistruct",
-    ".rad": "radioss",
-}
-"""Ending of the mesh's name → the output that is written for it if none is named."""
-
 
 def fe_mesh_of(onto: Path | None, outputs: tuple[str, ...]) -> tuple[FeMesh | None, tuple[str, ...]]:
     """Read the mesh, before anything is computed, and add the outputs of its format where none is named."""
@@ -31,11 +21,11 @@ def fe_mesh_of(onto: Path | None, outputs: tuple[str, ...]) -> tuple[FeMesh | No
         return None, outputs
     if not outputs:
         raise click.UsageError("--onto names a mesh, but --outputs none writes no files", click.get_current_context())
-    from geomdrap.export.fe_read import read_fe_mesh
+    from geomdrap.export.fe_read import FORMATS, read_fe_mesh
 
     mesh = read_fe_mesh(onto)
     if not set(outputs) & set(FE_OUTPUTS):
-        outputs = (*outputs, FORMATS[onto.suffix.lower()], "acp")
+        outputs = (*outputs, FORMATS[onto.suffix.lower()].output, "acp")
     return mesh, outputs
 
 
@@ -45,7 +35,15 @@ def ply_on(
     """The ply on the mesh, or on the part's own facets; None where no output is of elements."""
     if not set(outputs) & set(FE_OUTPUTS):
         return None
-    from geomdrap.export.fe_mesh import mesh_of_part
     from geomdrap.export.map_onto import map_onto
 
-    return map_onto(result, mesh if mesh is not None else mesh_of_part(result.net.surface), axis)
+    return map_onto(result, mesh, axis)
+
+
+def notes_on(elements: ElementPly | None, outputs: tuple[str, ...]) -> list[str]:
+    """Sentences on what is doubtful about the ply on the mesh, and what an output lacks of it."""
+    if elements is None:
+        return []
+    from geomdrap.export.fe_nastran import losses
+
+    return [*elements.notes(), *(losses(elements) if "nastran" in outputs else ())]

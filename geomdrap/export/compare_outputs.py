@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from geomdrap.export.outputs import Output
+from geomdrap.export.outputs import Extras, Output
 from geomdrap.export.whole import whole_folder
 
 if TYPE_CHECKING:
     from geomdrap.criticism import Comparison
 
 COMPARE_OUTPUTS = {
-    "json": Output("json", "compare.json", "geomdrap.export.compare_json", 0.1),
-    "csv": Output("csv", "residuals.csv", "geomdrap.export.compare_table", 0.1),
-    "vtu": Output("vtu", "residuals.vtu", "geomdrap.export.compare_vtu", 0.1),
-    "png": Output("png", "compare.png", "geomdrap.export.compare_picture", 0.7),
+    "json": Output("json", "compare.json", "geomdrap.export.compare_json", takes="files"),
+    "csv": Output("csv", "residuals.csv", "geomdrap.export.compare_table"),
+    "vtu": Output("vtu", "residuals.vtu", "geomdrap.export.compare_vtu"),
+    "png": Output("png", "compare.png", "geomdrap.export.compare_picture"),
 }
 
 
@@ -33,7 +32,5 @@ def write_comparison(comparison: Comparison, folder: Path, names: Iterable[str])
     files = {output.key: folder / output.file for output in chosen}
     with whole_folder(folder) as scratch:
         for output in chosen:
-            module = import_module(output.module)
-            more = (files,) if output.key == "json" else ()
-            module.write(comparison, scratch / output.file, *more)
+            output.write(comparison, scratch / output.file, Extras(), files)
     return files

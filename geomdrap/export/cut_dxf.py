@@ -40,7 +40,7 @@ def dxf_text(result: Drape) -> str:
         for name, colour in COLOURS.items():
             document.layers.add(name, color=colour)
         space = document.modelspace()
-        add_words(space, BOUNDARY, style_words(result), corner_below(pieces), letter_height(pieces))
+        add_words(space, BOUNDARY, style_words(pieces), corner_below(pieces), letter_height(pieces))
         for piece in pieces:
             draw_piece(document.blocks.new(piece.name), piece, result)
             space.add_blockref(piece.name, (0, 0), dxfattribs={"layer": BOUNDARY})
@@ -49,11 +49,11 @@ def dxf_text(result: Drape) -> str:
     return stream.getvalue()
 
 
-def style_words(result: Drape) -> list[str]:
+def style_words(pieces: tuple[Piece, ...]) -> list[str]:
     """System text that stands once in the file."""
     return [
         "ASTM/D6673",
-        f"Style Name: {cut_pieces(result)[0].name if result.flat.outer else 'EMPTY'}",
+        f"Style Name: {pieces[0].name if pieces else 'EMPTY'}",
         "Sample Size: 1",
         "Units: METRIC",
     ]

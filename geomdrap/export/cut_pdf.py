@@ -146,10 +146,7 @@ def overview(result: Drape, pieces: tuple[Piece, ...], pages: Tiling, paper: str
         y, shown = height - MARGIN - 5.0 * (k + 1), drawable(line)
         axes.text(MARGIN, y, shown, fontsize=8.5, fontweight=bold, color=palette.INK)
     room = np.array([width - 2 * MARGIN, height - 2 * MARGIN - 5.0 * (len(words) + 2)])
-    step = pages.shown - OVERLAP
-    whole = np.array([pages.columns, pages.rows]) * step + OVERLAP
-    scale = float((room / whole).min())
-    start = pages.tiles[0].lower - [pages.tiles[0].column - 1, pages.rows - pages.tiles[0].row] * step
+    scale, start = float((room / pages.covered).min()), pages.start
     for tile in pages.tiles:
         corner = MARGIN + scale * (tile.lower - start)
         box = Rectangle(tuple(corner), *(scale * pages.shown), fill=False, ec=palette.FAINT, lw=0.1 * POINT)

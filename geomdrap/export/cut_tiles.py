@@ -31,10 +31,15 @@ class Tile:
 
 @dataclass(frozen=True)
 class Tiling:
-    """All pages: their size and that of what they show (2,) mm, numbers of rows and columns, and those needed."""
+    """All pages: their size and that of what they show (2,) mm, numbers of rows and columns, and those needed.
+
+    ``start`` (2,): lower left corner in the fabric of the pages together; ``covered`` (2,) mm: their size.
+    """
 
     page: Floats
     shown: Floats
+    start: Floats
+    covered: Floats
     rows: int
     columns: int
     tiles: tuple[Tile, ...]
@@ -62,7 +67,7 @@ def lay_out(pieces: tuple[Piece, ...], page: Floats) -> Tiling:
             corner = start + [column, rows - 1 - row] * step
             if any(touches(piece.outer, corner, shown) for piece in pieces):
                 tiles.append(Tile(row + 1, column + 1, corner))
-    return Tiling(page, shown, rows, columns, tuple(tiles))
+    return Tiling(page, shown, start, covered, rows, columns, tuple(tiles))
 
 
 def touches(polygon: Floats, lower: Floats, size: Floats) -> bool:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.errors import GeomdrapError
+from geomdrap.fields.evaluate import unit_vectors
 
 if TYPE_CHECKING:
     from geomdrap.surface import Surface
@@ -72,7 +74,8 @@ class FeMesh:
         """Unit normals (m, 3) by the order of the corners; of quadrilaterals across their diagonals."""
         a, b, c, d = self.points[self.corners].swapaxes(0, 1)
         d = np.where(self.is_quad[:, None], d, a)
-        return unit(np.where(self.is_quad[:, None], np.cross(c - a, d - b), np.cross(b - a, c - a)))
+        across = np.where(self.is_quad[:, None], np.cross(c - a, d - b), np.cross(b - a, c - a))
+        return np.asarray(unit_vectors(across))
 
     @property
     def sides(self) -> Floats:
@@ -90,15 +93,9 @@ class FeMesh:
         return np.where(by_axis[:, None], laid_into(np.nan_to_num(self.material_axis), normals), turned)
 
 
-def unit(vectors: Floats) -> Floats:
-    """Vectors (k, 3) of length one; zero ones stay zero."""
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.asarray(vectors / np.where(length > 0.0, length, 1.0))
-
-
 def laid_into(vectors: Floats, normals: Floats) -> Floats:
     """Vectors (k, 3) projected onto the planes of unit normals (k, 3), of length one."""
-    return unit(vectors - (vectors * normals).sum(axis=1, keepdims=True) * normals)
+    return np.asarray(unit_vectors(vectors - (vectors * normals).sum(axis=1, keepdims=True) * normals))
 
 
 def angle_between(start: Floats, end: Floats, normals: Floats) -> Floats:
@@ -124,8 +121,17 @@ def mesh_of_part(surface: Surface) -> FeMesh:
     )
 
 
-def assemble(name: str, nodes: Nodes, elements: Elements, **more: Any) -> FeMesh:
-    """A mesh from what a file holds; ``more`` are its other fields, if it has them.
+def assemble(
+    name: str,
+    nodes: Nodes,
+    elements: Elements,
+    *,
+    others: Iterable[str] = (),
+    material_angle: Floats | None = None,
+    material_axis: Floats | None = None,
+    deck: Deck | None = None,
+) -> FeMesh:
+    """A mesh from what a file holds. Without material angles and axes the side 1-2 is the material's.
 
     Raises GeomdrapError where there are no shells, or one is there twice, names a node that is not there, or has no
     area.
@@ -151,10 +157,10 @@ def assemble(name: str, nodes: Nodes, elements: Elements, **more: Any) -> FeMesh
         element_ids=ids,
         parts=np.array([element[1] for element in elements], np.int64),
         corners=corners,
-        material_angle=more.get("material_angle", np.zeros(m)),
-        material_axis=more.get("material_axis", np.full((m, 3), np.nan)),
-        deck=more.get("deck"),
-        others=tuple(sorted(more.get("others", ()))),
+        material_angle=np.zeros(m) if material_angle is None else material_angle,
+        material_axis=np.full((m, 3), np.nan) if material_axis is None else material_axis,
+        deck=deck,
+        others=tuple(sorted(others)),
     )
     flat = np.abs(mesh.normals).sum(axis=1) == 0.0
     if flat.any():

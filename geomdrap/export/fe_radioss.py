@@ -20,6 +20,8 @@ def write(ply: ElementPly, path: Path, ply_thickness: float | None = None) -> No
 
     /DRAPE: title, then per line entity (10 columns), number (10), thinning (20), angle (20), as the starter reads it
     (Radioss starter input, /DRAPE). The factor multiplies the thickness of the /PLY; the angle is added to its own.
+    It counts from the element's material axis, its side 1-2 where the mesh names none, or from ``ply.axis`` where
+    that is given: the property's reference vector must then be the same.
     """
     write_whole(path, "\n".join(lines(ply, ply_thickness)) + "\n")
 
@@ -28,6 +30,7 @@ def lines(ply: ElementPly, ply_thickness: float | None) -> Iterator[str]:
     """The lines of the file."""
     on = ply.is_draped
     yield "#---1----|----2----|----3----|----4----|----5----|----6----|----7----|----8----|----9----|---10----|"
+    yield f"# angles count from {ply.axis_words}"
     if ply_thickness is not None:
         yield f"# thickness of the flat fabric: {ply_thickness:g} mm, to be given to the ply; angle of the ply: 0"
     if not on.all():

@@ -4,19 +4,28 @@ from __future__ import annotations
 
 from importlib import import_module
 from pathlib import Path
+from typing import NamedTuple
 
 from geomdrap.errors import GeomdrapError
 from geomdrap.export.fe_mesh import FeMesh
 
-READERS = {
-    ".inp": "fe_read_abaqus",
-    ".bdf": "fe_read_nastran",
-    ".nas": "fe_read_nastran",
-    ".dat": "fe_read_nastran",
-    ".fem": "fe_read_nastran",
-    ".rad": "fe_read_radioss",
+
+class Format(NamedTuple):
+    """A solver's files: module with ``read(name, lines) -> FeMesh``; the output that is written for such a mesh."""
+
+    reader: str
+    output: str
+
+
+FORMATS = {
+    ".inp": Format("fe_read_abaqus", "abaqus"),
+    ".bdf": Format("fe_read_nastran", "nastran"),
+    ".nas": Format("fe_read_nastran", "nastran"),
+    ".dat": Format("fe_read_nastran", "nastran"),
+    ".fem": Format("fe_read_nastran", "optistruct"),
+    ".rad": Format("fe_read_radioss", "radioss"),
 }
-"""Ending of the file's name → module with ``read(name, lines) -> FeMesh``."""
+"""By the ending of the file's name."""
 
 
 def read_fe_mesh(path: str | Path) -> FeMesh:
@@ -25,16 +34,17 @@ def read_fe_mesh(path: str | Path) -> FeMesh:
     Raises GeomdrapError, in one sentence, for whatever keeps the file from being read.
     """
     path = Path(path)
-    reader = READERS.get(path.suffix.lower())
-    if reader is None:
-        known = ", ".join(READERS)
+    kind = FORMATS.get(path.suffix.lower())
+    if kind is None:
+        known = ", ".join(FORMATS)
         raise GeomdrapError(f"{path.name}: a ply is mapped onto meshes in {known} files, not '{path.suffix}'")
     try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+        text = path.read_text(encoding="utf-8", errors="surrogateescape")  # comments may be in any encoding
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise GeomdrapError(f"{path} cannot be read ({reason}); check the name of the mesh") from None
-    mesh: FeMesh = import_module(f"geomdrap.export.{reader}").read(path.name, lines)
+    lines = text.removesuffix("\n").split("\n")  # not splitlines, which splits at form feeds too
+    mesh: FeMesh = import_module(f"geomdrap.export.{kind.reader}").read(path.name, lines)
     return mesh
 
 

@@ -21,16 +21,18 @@ REFUSED = {
     "ELCOPY": "copies elements",
     "SYSTEM": "has nodes in a system of their own",
 }
+SCOPES = ("PART", "END PART", "ASSEMBLY", "INSTANCE", "END INSTANCE")
+"""Keywords after which numbers of nodes and elements begin anew."""
 
 
 def read(name: str, lines: Sequence[str]) -> FeMesh:
     """The nodes and shells of the file. Raises GeomdrapError."""
-    parts: list[tuple[Nodes, Elements]] = [({}, [])]  # numbers are a part's own
+    parts: list[tuple[Nodes, Elements]] = [({}, [])]
     others = set()
     for keyword, options, data in blocks(lines):
         refuse(name, keyword, options, data)
         kind = SHELL.match(options.get("TYPE", "").upper())
-        if keyword == "PART":
+        if keyword in SCOPES:
             parts.append(({}, []))
         elif keyword == "NODE":
             parts[-1][0].update(read_nodes(name, data))

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
+FIELD = re.compile(r"%\d*(?:\.(\d+)f|d)")
+"""Of a pattern: a whole number, or a number with its decimals."""
+
 
 def rows(pattern: str, *columns: Any) -> Iterator[str]:
-    """One line of text, by a %-pattern, for each entry of columns (k,); minus zero is written as zero."""
-    plain = [np.asarray(c) + 0 if np.asarray(c).dtype.kind != "f" else cleaned(c) for c in columns]
-    lists = [column.tolist() for column in plain]
+    """One line of text, by a pattern of %d and %.nf, for each entry of columns (k,); no zero has a minus."""
+    fields = FIELD.findall(pattern)
+    lists = [rounded(column, places).tolist() for column, places in zip(columns, fields, strict=True)]
     for row in zip(*lists, strict=True):
         yield pattern % row
 
 
-def cleaned(values: Any) -> np.ndarray:
-    """Numbers to nine decimals without negative zeros."""
-    return np.asarray(np.round(np.asarray(values, float), 9) + 0.0)
+def rounded(values: Any, places: str) -> np.ndarray:
+    """Numbers to a field's decimals (none: as they are), without the negative zeros that rounding makes."""
+    return np.asarray(values) if not places else np.asarray(np.round(np.asarray(values, float), int(places)) + 0.0)

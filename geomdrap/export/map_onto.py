@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.errors import GeomdrapError
-from geomdrap.export.fe_mesh import FeMesh, Floats, angle_between, laid_into, unit
+from geomdrap.export.fe_mesh import FeMesh, Floats, angle_between, laid_into, mesh_of_part
 from geomdrap.export.ply_corners import at_corners, barycentric, piece_shear, ply_corners
-from geomdrap.fields.evaluate import unit_directions
+from geomdrap.fields.evaluate import unit_directions, unit_vectors
 from geomdrap.surface.nearest import NearestTree
 
 if TYPE_CHECKING:
@@ -60,6 +60,13 @@ class ElementPly:
         along = np.broadcast_to(np.asarray(self.axis, float), normals.shape)
         return angle_between(laid_into(along, normals), direction, normals)
 
+    @property
+    def axis_words(self) -> str:
+        """What ply angles count from, in words."""
+        if self.axis is None:
+            return "the element's own material axis (its side 1-2 where the mesh names none)"
+        return "({:g}, {:g}, {:g}) laid into the element".format(*self.axis)
+
     def notes(self) -> list[str]:
         """Sentences on what is doubtful: elements without ply, a mesh much smaller than the part."""
         notes = []
@@ -75,17 +82,21 @@ class ElementPly:
         return [
             *notes,
             f"{without:,} of {len(self.is_draped):,} elements of {self.mesh.source} have no ply ({first} ...): the "
-            "part is bare there, or further away than one pitch",
+            "part is bare there, further away than one pitch, or inclined to them by more than 60°",
         ]
 
 
-def map_onto(result: Drape, mesh: FeMesh, axis: tuple[float, float, float] | None = None) -> ElementPly:
+def map_onto(
+    result: Drape, mesh: FeMesh | None = None, axis: tuple[float, float, float] | None = None
+) -> ElementPly:
     """The ply at the centre of each element, read at the nearest point of the part.
 
-    Directions and shear are linear over the facets there (cut to the pitch), and continuous but at creases. An
-    element has no ply where the part is bare, lies further away than a pitch, or is inclined by more than 60°.
-    Raises GeomdrapError where no element has any, or the mesh is in another unit.
+    Without a mesh the part's own facets are the elements. Directions and shear are linear over the facets there (cut
+    to the pitch), and continuous but at creases. An element has no ply where the part is bare, lies further away than
+    a pitch, or is inclined by more than 60°. Raises GeomdrapError where no element has any, or the mesh is in another
+    unit.
     """
+    mesh = mesh if mesh is not None else mesh_of_part(result.net.surface)
     relative = require_size(mesh, result.net.surface)
     trimmed = result.trimmed
     pieces = trimmed.mesh
@@ -135,13 +146,11 @@ def require_size(mesh: FeMesh, part: Surface) -> float:
 def interpolated(result: Drape, piece: np.ndarray, shares: Floats) -> tuple[Floats, Floats, Floats]:
     """Warp and weft (k, 3) and shear (k,) at shares (k, 3) of the corners of facets cut to the pitch (k,)."""
     joined, _ = ply_corners(result).joined()
-    bare, area = result.trimmed.kind == 0, result.trimmed.area
 
     def field(values: Floats) -> Floats:
-        values = np.where(bare, np.nan, values)
-        return np.asarray((at_corners(values, area, joined)[piece] * shares).sum(axis=1))
+        return np.asarray((at_corners(values, result.trimmed.area, joined)[piece] * shares).sum(axis=1))
 
     both = []
     for directions in unit_directions(result.trimmed):
-        both.append(unit(np.column_stack([field(component) for component in directions.T])))
+        both.append(unit_vectors(np.column_stack([field(component) for component in directions.T])))
     return both[0], both[1], field(piece_shear(result))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from geomdrap.export.whole import whole_folder
 
 if TYPE_CHECKING:
+    from geomdrap.criticism import Comparison
     from geomdrap.export.map_onto import ElementPly
     from geomdrap.fields import Drape
 
@@ -33,22 +34,22 @@ class Extras:
 class Output(NamedTuple):
     """One result file: its key in the JSON's ``files``, its name, and the function that writes it.
 
-    ``weight`` is about the time that it takes on a large part, of 1 for all; ``takes`` says what the function takes:
-    ``result``; ``progress``, the result and a ``progress`` of its own; ``files``, the result and the paths of all
-    files; ``command``, the result and the command line; ``elements``, the ply on elements and its thickness;
-    ``paper``, the result and the paper.
+    The result is a drape or a comparison. ``weight`` is about the time that it takes on a large part, against that of
+    the others; ``takes`` says what the function takes: ``result``; ``progress``, the result and a ``progress`` of its
+    own; ``files``, the result and the paths of all files; ``command``, the result and the command line; ``elements``,
+    the ply on elements and its thickness; ``paper``, the result and the paper.
     """
 
     key: str
     file: str
     module: str
-    weight: float
+    weight: float = 1.0
     function: str = "write"
     takes: str = "result"
 
     def write(
         self,
-        result: Drape,
+        result: Drape | Comparison,
         path: Path,
         extras: Extras,
         files: Mapping[str, Path],
@@ -127,10 +128,9 @@ def with_elements(result: Drape, chosen: Iterable[Output], extras: Extras) -> Ex
     """Fill in the ply on the part's own facets where an output needs elements and none are given."""
     if extras.elements is not None or not any(output.takes == "elements" for output in chosen):
         return extras
-    from geomdrap.export.fe_mesh import mesh_of_part
     from geomdrap.export.map_onto import map_onto
 
-    return replace(extras, elements=map_onto(result, mesh_of_part(result.net.surface)))
+    return replace(extras, elements=map_onto(result))
 
 
 def _part_of(progress: Callable[[float], None], before: float, weight: float, share: float) -> None:

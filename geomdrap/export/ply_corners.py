@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.export.scene import corner_normals
-from geomdrap.fields.evaluate import unit_directions
+from geomdrap.fields.evaluate import sheared, unit_directions
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape
@@ -100,8 +100,7 @@ def ply_corners(result: Drape) -> PlyCorners:
 
 def piece_shear(result: Drape) -> Floats:
     """Shear (m,) degrees, signed, on the facets cut to the pitch; NaN where bare."""
-    warp, weft = unit_directions(result.trimmed)
-    return np.asarray(np.degrees(np.arcsin(np.clip((warp * weft).sum(axis=1), -1.0, 1.0))))
+    return sheared(*unit_directions(result.trimmed))
 
 
 def at_corners(values: Floats, area: Floats, group: Array) -> Floats:

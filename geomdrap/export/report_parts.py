@@ -13,6 +13,8 @@ from geomdrap import __version__
 from geomdrap.export import palette
 from geomdrap.export.report_histogram import histogram
 from geomdrap.export.report_json import absent_counts, is_incomplete
+from geomdrap.fields.evaluate import MOST_RESIDUAL
+from geomdrap.fields.figures import least_blank
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape
@@ -21,8 +23,6 @@ EDGE_ERROR = 1e-4
 """Share of the pitch by which a side may be too long, and still be called right."""
 OFF_SURFACE = 0.01
 """Share of the pitch by which a node may lie off the part."""
-RESIDUAL = 1.0
-"""Degrees of curvature residual above which the pitch is called coarse, as in the warnings."""
 STOPS = 24
 """Of the colour scales drawn by the style sheet."""
 
@@ -67,19 +67,25 @@ def tiles(result: Drape) -> str:
         (f"{shear.p95:.2f}°", "on 95 % of the area at most"),
         (percent(shear.over_limit), "of the area over the limit"),
         (area(areas.fabric), "of fabric"),
-        (pattern_size(result).removesuffix(" mm"), "mm, rectangle to cut it from"),
+        pattern_tile(result),
     )
     return '<section class="tiles">' + "".join(
         f'<div class="card tile"><b>{value}</b><span>{words}</span></div>' for value, words in facts
     ) + "</section>"
 
 
+def pattern_tile(result: Drape) -> tuple[str, str]:
+    """The rectangle that the pattern is cut from; that there is none."""
+    if not result.flat.outer:
+        return "none", "flat pattern: no fabric lies on the part"
+    return pattern_size(result).removesuffix(" mm"), "mm, rectangle to cut it from"
+
+
 def pattern_size(result: Drape) -> str:
     """Width and height of the flat pattern, along warp and weft."""
     if not result.flat.outer:
         return "no pattern"
-    points = np.vstack(result.flat.outer)
-    width, height = points.max(axis=0) - points.min(axis=0)
+    width, height = least_blank(result.net, result.trimmed)
     return f"{width:.4g} × {height:.4g} mm"
 
 
@@ -167,8 +173,8 @@ def area_rows(result: Drape) -> Iterator[tuple[str, str, str]]:
     yield "draped", area(areas.draped), f"{percent(areas.coverage)} of the part"
     yield "fabric", area(areas.fabric), "the flat pattern"
     if result.flat.outer:
-        points = np.vstack(result.flat.outer)
-        blank = float(np.prod(points.max(axis=0) - points.min(axis=0)))
+        width, height = least_blank(result.net, result.trimmed)
+        blank = width * height
         yield "rectangle", area(blank), f"{pattern_size(result)}; {percent(1 - areas.fabric / blank)} of it is waste"
 
 
@@ -208,7 +214,7 @@ def check_rows(result: Drape) -> Iterator[tuple[str, str, str]]:
         yield "shear against curvature", "not made", "yarns that are no geodesics, or no node with a whole rectangle"
     else:
         yield (
-            "shear against curvature" + verdict(checks.curvature_residual <= RESIDUAL),
+            "shear against curvature" + verdict(checks.curvature_residual <= MOST_RESIDUAL),
             f"{checks.curvature_residual:.2g}°",
             "between shear and the curvature that the net encloses (Gauss-Bonnet), 95 % below",
         )

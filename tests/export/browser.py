@@ -98,14 +98,13 @@ class Page:
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
 
-    def resize(self, width: int, height: int, dark: bool = False, ratio: float = 1.0, touch: bool = False) -> None:
-        """Set the size of the window, its pixels per point, and whether the user likes it dark."""
+    def resize(self, width: int, height: int, dark: bool = False) -> None:
+        """Set the size of the window, and whether the user likes it dark."""
         self.call(
-            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio, mobile=False
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False
         )
         value = "dark" if dark else "light"
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": value}])
-        self.call("Emulation.setTouchEmulationEnabled", enabled=touch)
 
     def open(self, path: Path) -> None:
         """Open a file and wait until it is loaded."""
@@ -143,12 +142,9 @@ class Page:
         for kind in ("rawKeyDown", "keyUp"):
             self.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=8 if shift else 0)
 
-    def screenshot(self, path: Path | None = None) -> bytes:
+    def screenshot(self) -> bytes:
         """The window as a PNG."""
-        data = base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
-        if path is not None:
-            path.write_bytes(data)
-        return data
+        return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
 
 
 @contextmanager

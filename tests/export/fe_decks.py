@@ -6,6 +6,8 @@ import re
 
 import numpy as np
 
+FIRST_NODE, FIRST_ELEMENT = 1001, 501
+
 
 def grid(nx, ny, size, turn=0.0, height=lambda x, y: 0.0 * x):
     """Points (n, 3) and quads (m, 4) of a sheet nx × ny, ``size`` mm across; every third quad is turned over."""
@@ -20,30 +22,30 @@ def grid(nx, ny, size, turn=0.0, height=lambda x, y: 0.0 * x):
     return points, quads
 
 
-def abaqus(points, quads, first_node=1001, first_element=501, kind="S4R"):
+def abaqus(points, quads, first_element=FIRST_ELEMENT):
     lines = ["*HEADING", "a test", "** comment", "*NODE, NSET=ALL"]
-    lines += [f"{first_node + k}, {x:.9g}, {y:.9g}, {z:.9g}" for k, (x, y, z) in enumerate(points)]
-    lines += [f"*ELEMENT, TYPE={kind}, ELSET=SHELLS"]
-    lines += [f"{first_element + k}, " + ", ".join(str(first_node + n) for n in q) for k, q in enumerate(quads)]
+    lines += [f"{FIRST_NODE + k}, {x:.9g}, {y:.9g}, {z:.9g}" for k, (x, y, z) in enumerate(points)]
+    lines += ["*ELEMENT, TYPE=S4R, ELSET=SHELLS"]
+    lines += [f"{first_element + k}, " + ", ".join(str(FIRST_NODE + n) for n in q) for k, q in enumerate(quads)]
     return "\n".join([*lines, "*MATERIAL, NAME=M", "*ELASTIC", "1., 0.3"]) + "\n"
 
 
-def nastran(points, quads, theta="", first_node=1001, first_element=501, part=7):
+def nastran(points, quads, theta=""):
     lines = ["SOL 101", "CEND", "BEGIN BULK", "$ nodes", "MAT1,1,70000.,,0.33", "PSHELL         7       1      1."]
     for k, (x, y, z) in enumerate(points):
-        lines += [f"{'GRID*':<8}{first_node + k:>16}{'':>16}{x:>16.9g}{y:>16.9g}*", f"{'*':<8}{z:>16.9g}"]
+        lines += [f"{'GRID*':<8}{FIRST_NODE + k:>16}{'':>16}{x:>16.9g}{y:>16.9g}*", f"{'*':<8}{z:>16.9g}"]
     for k, q in enumerate(quads):
-        corners = "".join(f"{first_node + n:>8}" for n in q)
-        lines.append(f"{'CQUAD4':<8}{first_element + k:>8}{part:>8}{corners}{theta:>8}{'0.25':>8}")
+        corners = "".join(f"{FIRST_NODE + n:>8}" for n in q)
+        lines.append(f"{'CQUAD4':<8}{FIRST_ELEMENT + k:>8}{7:>8}{corners}{theta:>8}{'0.25':>8}")
     return "\n".join([*lines, "ENDDATA"]) + "\n"
 
 
-def radioss(points, quads, first_node=1001, first_element=501, part=3):
+def radioss(points, quads):
     lines = ["#RADIOSS STARTER", "/BEGIN", "test", "/NODE"]
-    lines += [f"{first_node + k:>10}{x:>20.9g}{y:>20.9g}{z:>20.9g}" for k, (x, y, z) in enumerate(points)]
-    lines += [f"/SHELL/{part}", "# shell_ID   node_ID1"]
+    lines += [f"{FIRST_NODE + k:>10}{x:>20.9g}{y:>20.9g}{z:>20.9g}" for k, (x, y, z) in enumerate(points)]
+    lines += ["/SHELL/3", "# shell_ID   node_ID1"]
     lines += [
-        f"{first_element + k:>10}" + "".join(f"{first_node + n:>10}" for n in q) for k, q in enumerate(quads)
+        f"{FIRST_ELEMENT + k:>10}" + "".join(f"{FIRST_NODE + n:>10}" for n in q) for k, q in enumerate(quads)
     ]
     return "\n".join([*lines, "/END"]) + "\n"
 
@@ -80,6 +82,12 @@ def abaqus_axes(text, orientation):
 def fixed_fields(line):
     """The fields of a small-field Nastran card, eight columns each."""
     return [line[k : k + 8].strip() for k in range(0, len(line), 8)]
+
+
+def nastran_theta(text):
+    """{element: (name, fields)} of the shells in small fields."""
+    cards = [fixed_fields(line) for line in text.splitlines() if line.startswith(("CQUAD4", "CTRIA3"))]
+    return {int(card[1]): card for card in cards}
 
 
 def turned(vectors, about, degrees):

@@ -257,9 +257,27 @@ def test_without_webgl_the_page_says_so_and_keeps_its_numbers(page, file):
     page.open(file)
     page.call("Page.removeScriptToEvaluateOnNewDocument", identifier=added)
     assert page.run("document.getElementById('failed').hidden") is False
-    assert "WebGL" in page.text("failed")
+    assert "cannot be shown: this browser gives no WebGL 2." in page.text("failed")
     assert "Gauss-Bonnet" in page.run("document.body.innerText")
     assert page.errors == []
+
+
+def test_without_a_flat_pattern_no_rectangle_is_named():
+    empty = gd.evaluate(gd.drape(shapes.plane(200.0, 160.0, 8.0), (0, 0, 0), 25.0, 79.0))
+    assert not empty.flat.outer
+    words = report_html.page(empty)
+    assert "<b>none</b><span>flat pattern: no fabric lies on the part</span>" in words
+    assert "rectangle to cut it from" not in words
+
+
+def test_an_error_of_the_page_is_not_taken_for_a_lack_of_webgl(page, file):
+    script = "window.ResizeObserver = class { constructor() { throw new Error('out of order'); } }"
+    added = page.call("Page.addScriptToEvaluateOnNewDocument", source=script)["identifier"]
+    page.open(file)
+    page.call("Page.removeScriptToEvaluateOnNewDocument", identifier=added)
+    assert "cannot be shown: out of order." in page.text("failed")
+    assert "WebGL" not in page.text("failed")
+    assert len(page.errors) == 1, "it is on the console"
 
 
 def test_it_shows_command_statistics_checks_and_bare_regions(opened, result):

@@ -1,9 +1,11 @@
 // Draws a model with a camera on a canvas.
 
+class NoWebGL extends Error {}
+
 class Painter {
   constructor(canvas, model, flatView) {
     const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, preserveDrawingBuffer: true });
-    if (!gl) throw new Error("no WebGL 2");
+    if (!gl) throw new NoWebGL();
     Object.assign(this, { canvas, gl, model, flatView });
     this.ply = compile(gl, VERTEX, FRAGMENT);
     this.edge = compile(gl, EDGE_VERTEX, EDGE_FRAGMENT);

@@ -1,4 +1,4 @@
-// Starts the viewer; without WebGL 2 the numbers below are all there is, and the page says so.
+// Starts the viewer; where it cannot be, as without WebGL 2, the numbers below are all there is, and the page says why.
 
 function start() {
   const copy = document.getElementById("copy");
@@ -9,7 +9,9 @@ function start() {
   } catch (error) {
     document.documentElement.dataset.ready = "no";
     document.getElementById("failed").hidden = false;
-    document.getElementById("failed-why").textContent = error.message;
+    const known = error instanceof NoWebGL;
+    if (!known) console.error(error);
+    document.getElementById("failed-why").textContent = known ? "this browser gives no WebGL 2" : error.message;
   }
 }
 

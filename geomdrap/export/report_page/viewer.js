@@ -97,7 +97,7 @@ class Viewer {
 
   goTo(point, toward) {
     const { camera } = this.part;
-    camera.lookFrom(unit(along(scaled(toward, 1), 0.35, camera.toward)));
+    camera.lookFrom(unit(along(toward, 0.35, camera.toward)));
     this.part.fit();
     camera.zoom(2.5);
     const [x, y] = camera.project(point);
