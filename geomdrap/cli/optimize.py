@@ -106,10 +106,11 @@ def optimize(
                 job, cases, ready.objective, budget=budget,
                 pool=running.pool, done=running.earlier, on_row=running.take,
             )  # fmt: skip
-        progress.step("Draping the best")
-        best = result.sweep.draped_best()
-        progress.step("Writing")
-        files = write_optimum(result, best, folder, outputs, progress.share)
+            running.take.finish()
+            progress.step("Draping the best")
+            best = result.sweep.draped_best()
+            progress.step("Writing")
+            files = write_optimum(result, best, folder, outputs, progress.share)
     say(best.warnings, (*notes, *best.net.notes), quiet)
     if as_json:
         print_json(as_dict(result, files))

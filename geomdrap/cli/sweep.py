@@ -106,10 +106,11 @@ def sweep(
                 ready.job, cases, ready.objective, criteria=criteria,
                 pool=running.pool, done=running.earlier, on_row=running.take,
             )  # fmt: skip
-        progress.step("Draping the best")
-        best = result.draped_best()
-        progress.step("Writing")
-        files = write_sweep(result, best, folder, outputs, progress.share)
+            running.take.finish()
+            progress.step("Draping the best")
+            best = result.draped_best()
+            progress.step("Writing")
+            files = write_sweep(result, best, folder, outputs, progress.share)
     say(best.warnings, (*notes, *best.net.notes), quiet)
     if as_json:
         print_json(as_dict(result, files))

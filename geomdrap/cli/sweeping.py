@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
     from geomdrap.sweep import Job, Row
     from geomdrap.sweep.case import Case
+    from geomdrap.sweep.pool import Pool
     from geomdrap.sweep.record import Record
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -89,23 +90,16 @@ class Prepared(NamedTuple):
     jobs: int
     scheduler: str | None
 
-    @contextmanager
-    def pool(self, cases: int) -> Iterator[Any]:
-        """The place where so many cases run."""
+    def pool(self, cases: int) -> Pool:
+        """The place where so many cases run; what runs them closes it."""
         from geomdrap.sweep.pool import LocalPool, ThroughExecutor
 
-        jobs = min(self.jobs, cases)
-        pool: Any
         if self.scheduler:
             from geomdrap.sweep.cluster import ClusterPool
 
-            pool = ClusterPool(self.job, self.scheduler)
-        else:
-            pool = LocalPool(self.job, jobs) if jobs > 1 else ThroughExecutor(self.job)
-        try:
-            yield pool
-        finally:
-            pool.close()
+            return ClusterPool(self.job, self.scheduler)
+        jobs = min(self.jobs, cases)
+        return LocalPool(self.job, jobs) if jobs > 1 else ThroughExecutor(self.job)
 
 
 def prepare(
@@ -148,7 +142,7 @@ def prepare(
 class Running(NamedTuple):
     """A run: where its cases are draped, the rows that there are, and what takes new ones."""
 
-    pool: Any
+    pool: Pool
     earlier: tuple[Row, ...]
     take: Counter
 
@@ -163,16 +157,16 @@ def recorded(
     earlier = read_record(folder / FILE, ready.job) if folder and resume else ()
     known = {row.key for row in earlier}
     done = sum((case.origin, case.angle) in known for case in cases)
-    with ready.pool(len(cases) - done + more) as pool:
-        record = Record(folder / FILE, ready.job, earlier) if folder else None
-        count = Counter(progress, len(cases) + more, done, record, "at most " if more else "")
-        try:
-            yield Running(pool, earlier, count)
-        except KeyboardInterrupt:
-            raise KeyboardInterrupt(count.interrupted()) from None
-        finally:
-            if record:
-                record.close()
+    pool = ready.pool(len(cases) - done + more)
+    record = Record(folder / FILE, ready.job, earlier) if folder else None
+    count = Counter(progress, len(cases) + more, done, record, "at most " if more else "")
+    try:
+        yield Running(pool, earlier, count)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(count.interrupted()) from None
+    finally:
+        if record:
+            record.close()
 
 
 class Counter:
@@ -181,6 +175,7 @@ class Counter:
     def __init__(self, progress: Progress, total: int, done: int, record: Record | None, at_most: str = ""):
         self.progress, self.total, self.done, self.record, self.at_most = progress, total, done, record, at_most
         self.before, self.start = done, time.monotonic()
+        self.finished = False
 
     def __call__(self, row: Row) -> None:
         """Take a row."""
@@ -191,11 +186,18 @@ class Counter:
         left = duration(each * (self.total - self.done))
         self.progress.share(self.done / self.total, f"{self.done} of {self.total} cases, {self.at_most}{left} left")
 
+    def finish(self) -> None:
+        """All rows are there; what is left is to drape the best again and to write."""
+        self.finished = True
+
     def interrupted(self) -> str:
         """What there is after Ctrl-C."""
+        of = f"all {self.done}" if self.finished else f"{self.done} of {self.at_most}{self.total}"
         if self.record is None:
-            return f"interrupted after {self.done} of {self.total} cases; nothing was written"
-        there = f"{self.done} of {self.total} rows are in {self.record.path}"
+            return f"interrupted after {of} cases; nothing was written"
+        there = f"{of} rows are in {self.record.path}"
+        if self.finished:
+            there = f"{there}, but not all other files are written"
         return f"interrupted; {there}; the same command with --resume goes on from there"
 
 

@@ -207,6 +207,29 @@ def test_ctrl_c_leaves_a_good_file_from_which_resume_goes_on(
     assert rows.read_text().startswith(kept)
 
 
+@pytest.mark.parametrize("command", ["sweep", "optimize"])
+@pytest.mark.parametrize("step", ["draped_best", "whole_folder"])
+def test_ctrl_c_after_the_last_row_says_that_the_rows_are_there(
+    run: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, step: str
+) -> None:
+    from geomdrap.export import sweep_outputs
+    from geomdrap.sweep import Sweep
+
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Sweep if step == "draped_best" else sweep_outputs, step, interrupt)
+    asked = ("--origins", "centroid", "--angles", "0,45", "--pitch", 30, "-j", 1, "--outputs", "json")
+    result = run(command, "saddle.stl", *asked, *(("--budget", 0) if command == "optimize" else ()))
+    assert result.exit_code == 130
+    rows = Path(command) / "rows.jsonl"
+    assert len((tmp_path / rows).read_text().splitlines()) == 1 + 2
+    assert result.stderr.splitlines()[-1] == (
+        f"Error: interrupted; all 2 rows are in {rows}, but not all other files are written; the same command with "
+        "--resume goes on from there"
+    )
+
+
 def test_the_outputs_offered_are_those_that_can_be_written() -> None:
     from geomdrap.cli.sweeping import SWEEP_OUTPUTS as OFFERED
     from geomdrap.export.sweep_outputs import SWEEP_OUTPUTS
