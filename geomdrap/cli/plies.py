@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
+    from geomdrap.cli.progress import Progress
     from geomdrap.export.outputs import Extras
     from geomdrap.sweep import Ply
 
@@ -20,7 +21,7 @@ def drape_plies(
     """Drape the plies of a stack, write and print them; the exit code."""
     from geomdrap.cli.messages import print_json, say
     from geomdrap.cli.progress import Progress, announce_compilation
-    from geomdrap.export.plies_outputs import as_dict, write_plies
+    from geomdrap.export.plies_outputs import as_dict
     from geomdrap.export.report_json import is_incomplete
     from geomdrap.sweep import lay_plies, parse_plies
 
@@ -33,7 +34,7 @@ def drape_plies(
             surface, angles, thickness, **laid, on_ply=lambda ply: progress.share(ply.number / len(angles))
         )
         progress.step("Writing")
-        files = write_plies(stack, extras, folder, outputs, progress.share)
+        files = _write(stack, extras, folder, outputs, progress)
     warnings = [f"ply {ply.number}: {text}" for ply in stack for text in ply.drape.warnings]
     say(warnings, stack[0].drape.net.notes, quiet)
     if as_json:
@@ -67,6 +68,30 @@ def _read(
     before_drape()
     reach = (blank[0] / 2, blank[1] / 2) if blank else None
     return surface, {"reach": reach, "effects": effects, **laid}
+
+
+def _write(
+    stack: Sequence[Ply], extras: Extras, folder: Path, outputs: tuple[str, ...], progress: Progress
+) -> dict[int, dict[str, Path]]:
+    """Write the files of all plies; Ctrl-C says which there are."""
+    from geomdrap.export.plies_outputs import write_plies
+
+    written = 0
+
+    def count(share: float) -> None:
+        nonlocal written
+        written += 1
+        progress.share(share)
+
+    try:
+        return write_plies(stack, extras, folder, outputs, count)
+    except KeyboardInterrupt:
+        if not written:
+            raise
+        said = f"interrupted; {written} of {len(stack)} plies are written, in {folder / 'ply-1'}"
+        if written > 1:
+            said += f" to ply-{written}"
+        raise KeyboardInterrupt(f"{said}, and no plies.json of them") from None
 
 
 def _summary(stack: Sequence[Ply], thickness: float, folder: Path | None) -> Iterator[str]:

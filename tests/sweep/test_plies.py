@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -124,6 +125,33 @@ def test_the_command_writes_a_folder_per_ply(command: Callable[..., Result], tmp
         own = json.loads((folder / "drape.json").read_text())
         assert own["angle"] == document["plies"][number - 1]["angle"]
     assert json.loads((tmp_path / "drape" / "plies.json").read_text())["plies"][0]["ply_angle"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("after", "words"),
+    [
+        (0, "interrupted; nothing was written"),
+        (1, "interrupted; 1 of 3 plies are written, in drape/ply-1, and no plies.json of them"),
+        (2, "interrupted; 2 of 3 plies are written, in drape/ply-1 to ply-2, and no plies.json of them"),
+    ],
+)
+def test_ctrl_c_says_which_plies_are_written(
+    command: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, after: int, words: str
+) -> None:
+    from geomdrap.export import plies_outputs
+
+    def write_all(drape: object, folder: Path, *more: object, **named: object) -> dict[str, Path]:
+        if folder.name == f"ply-{after + 1}":
+            raise KeyboardInterrupt
+        return plain(drape, folder, *more, **named)
+
+    plain = plies_outputs.write_all
+    monkeypatch.setattr(plies_outputs, "write_all", write_all)
+    result = command("--plies", "0,45,-45", "--outputs", "json")
+    assert result.exit_code == 130
+    assert result.stderr.splitlines()[-1] == f"Error: {words}".replace("drape/", f"{Path('drape')}{os.sep}")
+    there = sorted(path.name for path in (tmp_path / "drape").iterdir()) if after else []
+    assert there == [f"ply-{n}" for n in range(1, after + 1)]
 
 
 def test_the_summary_has_a_line_per_ply(command: Callable[..., Result]) -> None:
