@@ -136,7 +136,7 @@ def scattered(job: Job, rows: Sequence[Row], count: int) -> list[Case]:
     and that turned by 45 degrees.
     """
     known = starts(rows, len(rows))
-    places = [np.array(row.origin) for row in known]
+    places = [locate(job.surface, row.asked)[1] for row in known]
     headings = [row.angle for row in known]
     middle = job.surface.points[job.surface.triangles].mean(axis=1)
     away = np.stack([np.linalg.norm(middle - place, axis=1) for place in places])
@@ -187,10 +187,12 @@ def _refine(job: Job, rows: Rows, objective: Objective, start: Row, step: Step, 
 def _around(job: Job, row: Row, step: Step, moves: Sequence[tuple[int, int, int]]) -> list[Case]:
     """The cases that ``moves`` lead to, steps along the warp, along the weft, and of the heading, from a row's.
 
-    A move that leaves the part leads to no case.
+    They go from the origin that the row's case asks for: where effects displace the ply, they will displace that of
+    the new case too. A move that leaves the part leads to no case.
     """
-    here = job.surface.only_component(locate(job.surface, np.array(row.origin))[0])
-    face, point, _ = locate(here, np.array(row.origin))
+    face, asked, _ = locate(job.surface, row.asked)
+    here = job.surface.only_component(face)
+    face, point, _ = locate(here, asked)
     normal = here.normals[face]
     along = heading_frame(normal, job.reference)
     angle_rad = math.radians(row.angle)

@@ -16,8 +16,8 @@ from scipy.spatial.transform import Rotation
 import geomdrap as gd
 from geomdrap.cli import cli
 from geomdrap.surface import samples, shapes
-from geomdrap.sweep import CRITERIA, Job, Objective, cases_of, locate_origins, optimize, parse_angles, run
-from geomdrap.sweep.optimize import FINEST, FINEST_ANGLE
+from geomdrap.sweep import CRITERIA, Case, Job, Objective, cases_of, locate_origins, optimize, parse_angles, run
+from geomdrap.sweep.optimize import AXES, FINEST, FINEST_ANGLE, Step, _around
 
 
 def _begin(surface: gd.Surface, grid: str, angles: str = "0:75:15") -> list[gd.sweep.Case]:
@@ -91,6 +91,15 @@ def test_no_small_step_from_a_converged_optimum_is_better() -> None:
         aside = job.surface.nearest([[x + FINEST * 8.0 * dx, y + FINEST * 8.0 * dy, z]]).point[0]
         moved = cases_of([(float(aside[0]), float(aside[1]), float(aside[2]))], [found.best.angle])
         assert run(job, moved).best.max_shear >= found.best.max_shear - 0.3
+
+
+def test_where_an_effect_displaces_the_ply_a_step_leads_to_a_drape_one_step_away() -> None:
+    job = Job(shapes.plane(400.0, 300.0, edge=50.0), 20.0, effects=(gd.effects.parse("placement:du=20"),))
+    row = job.row(Case("centroid", 30.0))
+    assert np.linalg.norm(row.origin) == pytest.approx(20.0)
+    for case in _around(job, row, Step(5.0, 1.0), AXES)[:4]:
+        away = np.subtract(job.row(case).origin, row.origin)
+        assert np.linalg.norm(away) == pytest.approx(5.0)
 
 
 def test_the_budget_is_kept_and_said() -> None:
