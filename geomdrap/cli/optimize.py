@@ -25,7 +25,7 @@ from geomdrap.cli.values import Names
 @click.option(
     "--angles",
     metavar="START:STOP:STEP,...",
-    help="Headings from which the search begins.  [default: 0:75:15, with effects 0:165:15]",
+    help="Headings from which the search begins.  [default: 0:75:15; 0:165:15 with effects or an oblong --blank]",
 )
 @click.option(
     "--origins",
@@ -89,13 +89,14 @@ def optimize(
     from geomdrap.cli.sweeping import check_folder, prepare, recorded
     from geomdrap.export.optimize_json import as_dict
     from geomdrap.export.sweep_outputs import write_optimum
+    from geomdrap.sweep.optimize import first_headings
 
     check_folder(folder, outputs)
     headings = gd.sweep.parse_angles(angles) if angles is not None else None
     with Progress(quiet) as progress:
         ready = prepare(progress, quiet, **asked)
         job = ready.job
-        headings = headings or gd.sweep.parse_angles("0:165:15" if job.effects else "0:75:15")
+        headings = headings or first_headings(job)
         places, notes = gd.sweep.locate_origins(
             job.surface, origins or ("centroid", "grid:5x5"), job.pitch, ready.project
         )

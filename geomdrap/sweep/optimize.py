@@ -21,6 +21,7 @@ from geomdrap.sweep.run import Sweep, require_best, rows_of
 
 STARTS = 3  # best cases, of different origins, from which the search goes on
 HALF_TURN = 180.0  # a net turned by it is the same net
+HEADING_STEP = 15.0  # degrees between the headings from which a search begins
 FINEST = 0.25  # pitches by which a seed is moved at last: less changes nothing that could be laid
 FINEST_ANGLE = 0.25  # degrees, likewise
 BUDGET = 800
@@ -127,6 +128,16 @@ def optimize(
     best = min(paths, key=lambda path: wanted.score(path[-1]))
     everything = Sweep(job, tuple(rows.found.values()), wanted)
     return Optimum(everything, swept, first[0], tuple(best), converged)
+
+
+def first_headings(job: Job) -> tuple[float, ...]:
+    """Headings (degrees) from which a search begins if none are given.
+
+    Over a quarter turn, after which warp and weft have changed places; over half a turn where these differ: with
+    effects, and with a blank that is longer one way.
+    """
+    alike = not job.effects and (job.reach is None or job.reach[0] == job.reach[1])
+    return tuple(float(a) for a in np.arange(0.0, 0.5 * HALF_TURN if alike else HALF_TURN, HEADING_STEP))
 
 
 def scattered(job: Job, rows: Sequence[Row], count: int) -> list[Case]:

@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ import geomdrap as gd
 from geomdrap.cli import cli
 from geomdrap.surface import samples, shapes
 from geomdrap.sweep import CRITERIA, Case, Job, Objective, cases_of, locate_origins, optimize, parse_angles, run
-from geomdrap.sweep.optimize import AXES, FINEST, FINEST_ANGLE, Step, _around
+from geomdrap.sweep.optimize import AXES, FINEST, FINEST_ANGLE, Step, _around, first_headings
 
 
 def _begin(surface: gd.Surface, grid: str, angles: str = "0:75:15") -> list[gd.sweep.Case]:
@@ -100,6 +101,25 @@ def test_where_an_effect_displaces_the_ply_a_step_leads_to_a_drape_one_step_away
     for case in _around(job, row, Step(5.0, 1.0), AXES)[:4]:
         away = np.subtract(job.row(case).origin, row.origin)
         assert np.linalg.norm(away) == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize(
+    ("asked", "written"),
+    [
+        ({}, "0:75:15"),
+        ({"reach": (200.0, 200.0)}, "0:75:15"),
+        ({"reach": (400.0, 100.0)}, "0:165:15"),
+        ({"effects": (gd.effects.parse("thickness:offset=1"),)}, "0:165:15"),
+    ],
+)
+def test_the_search_begins_over_half_a_turn_where_warp_and_weft_differ(asked: dict[str, Any], written: str) -> None:
+    assert first_headings(Job(bumpy_sheet(), 8.0, **asked)) == parse_angles(written)
+
+
+def test_a_strip_is_best_laid_along_a_plate_though_it_stands_across_it() -> None:
+    across = Job(shapes.plane(100.0, 400.0, edge=20.0), 10.0, reach=(200.0, 50.0))
+    cases = cases_of(["centroid"], first_headings(across))
+    assert optimize(across, cases, "coverage", budget=0).best.angle == 90.0
 
 
 def test_the_budget_is_kept_and_said() -> None:
