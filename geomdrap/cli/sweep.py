@@ -110,10 +110,10 @@ def sweep(
             progress.step("Draping the best")
             best = result.draped_best()
             progress.step("Writing")
-            files = write_sweep(result, best, folder, outputs, progress.share)
+            files = write_sweep(result, best, folder, outputs, progress.share, notes)
     say(best.warnings, (*notes, *best.net.notes), quiet)
     if as_json:
-        print_json(as_dict(result, files))
+        print_json(as_dict(result, best, files, notes))
     elif not quiet:
         click.echo(summary(result, files))
     return 0

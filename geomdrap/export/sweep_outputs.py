@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,15 +23,20 @@ OPTIMIZE_OUTPUTS = {"json": "optimize.json", "csv": "optimize.csv", "png": "opti
 
 
 def write_sweep(
-    sweep: Sweep, best: Drape, folder: Path, names: Iterable[str], progress: Callable[[float], None] = lambda _: None
+    sweep: Sweep,
+    best: Drape,
+    folder: Path,
+    names: Iterable[str],
+    progress: Callable[[float], None] = lambda _: None,
+    notes: Sequence[str] = (),
 ) -> dict[str, Path]:
     """Write the outputs ``names`` of a sweep to ``folder``; the path of each by its key.
 
-    ``best`` is the best case, whose own files go to a folder of that name. Raises `GeomdrapError` if the folder
-    cannot be written.
+    ``best`` is the best case, whose own files go to a folder of that name; ``notes`` on the cases go before its own.
+    Raises `GeomdrapError` if the folder cannot be written.
     """
     files = _chosen(SWEEP_OUTPUTS, folder, names)
-    return _write(files, sweep, None, best, lambda named: as_dict(sweep, named), progress)
+    return _write(files, sweep, None, best, partial(as_dict, sweep, best, notes=notes), progress)
 
 
 def write_optimum(
@@ -39,10 +45,12 @@ def write_optimum(
     folder: Path,
     names: Iterable[str],
     progress: Callable[[float], None] = lambda _: None,
+    notes: Sequence[str] = (),
 ) -> dict[str, Path]:
     """The same of an optimum: the table holds all drapes, the picture the sweep and the way of the search."""
     files = _chosen(OPTIMIZE_OUTPUTS, folder, names)
-    return _write(files, optimum.sweep, optimum, best, lambda named: optimum_as_dict(optimum, named), progress)
+    document = partial(optimum_as_dict, optimum, best, notes=notes)
+    return _write(files, optimum.sweep, optimum, best, document, progress)
 
 
 def _chosen(outputs: dict[str, str], folder: Path, names: Iterable[str]) -> dict[str, Path]:

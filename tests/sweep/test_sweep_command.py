@@ -74,6 +74,26 @@ def test_rows_are_ranked_in_the_json_and_the_table(run: Callable[..., Result], t
     assert json.loads((tmp_path / "sweep" / "sweep.json").read_text())["rows"] == rows
 
 
+@pytest.mark.parametrize("command", ["sweep", "optimize"])
+def test_the_json_says_what_stderr_says_and_how_plies_were_laid(
+    run: Callable[..., Result], tmp_path: Path, command: str
+) -> None:
+    run("sample", "hemisphere", "--facets", 400)
+    asked = ("--origins", "grid:5x5", "--angles", "0", "-j", 1, "--pitch", 10, "--outputs", "json", "--json")
+    laid = ("--limit-angle", 35, "--reference", "0,1,0", "--blank", "150x100")
+    result = run(command, "hemisphere.stl", *asked, *laid, *(("--budget", 0) if command == "optimize" else ()))
+    assert result.exit_code == 0, result.output
+    for text in (result.stdout, (tmp_path / command / f"{command}.json").read_text()):
+        document = json.loads(text)
+        assert document["limit_angle"] == 35.0
+        assert document["reference"] == [0.0, 1.0, 0.0]
+        assert document["blank"] == [150.0, 100.0]
+        assert document["warnings"]
+        assert "points of grid:5x5 miss the part and are left out" in " ".join(document["notes"])
+        said = [f"Warning: {text}" for text in document["warnings"]] + [f"Note: {text}" for text in document["notes"]]
+        assert [line for line in result.stderr.splitlines() if line.startswith(("Warning", "Note"))] == said
+
+
 def test_the_best_case_is_draped_and_written_as_drape_does(run: Callable[..., Result], tmp_path: Path) -> None:
     result = run(
         "sweep", "saddle.stl", "--angles", "10,45", "-j", 1, "--pitch", 12, "--json", "--objective", "max-shear"
