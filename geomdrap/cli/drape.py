@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -83,7 +83,8 @@ def drape(
     """Drape PART: net, shear map, flat pattern, statistics.
 
     PART is a mesh (STL, OBJ, PLY, OFF, GLB, VTU, Gmsh, Abaqus, Nastran) or, with the cad extra, STEP or
-    IGES. All result files are written at the end, together: a run that fails leaves earlier ones untouched.
+    IGES. All result files, with --plies those of each ply, are written at the end, together: a run that fails before
+    that leaves earlier ones untouched.
 
     \b
     Examples:
@@ -96,10 +97,10 @@ def drape(
       geomdrap drape hood.stl --angle 45 --outputs cut,pdf --paper A3
       geomdrap drape hood.stl --angle 45 --onto hood_fe.inp --ply-thickness 0.3
     """
-    from geomdrap.cli.messages import print_json, say
+    from geomdrap.cli.messages import of_an_earlier_run, print_json, say
     from geomdrap.cli.progress import Progress, announce_compilation
     from geomdrap.cli.summary import summary
-    from geomdrap.export.outputs import Extras, write_all
+    from geomdrap.export.outputs import Extras, left_over, write_all
     from geomdrap.export.report_json import as_dict, is_incomplete
 
     _check_folder(folder, outputs)
@@ -122,7 +123,7 @@ def drape(
         elements = ply_on(result, mesh, fe_axis, outputs)
         files = write_all(result, folder, outputs, progress.share, Extras(command, elements, ply_thickness, paper))
     without = elements.notes() if elements is not None else []
-    left = tuple(_left_over(folder, files))
+    left = tuple(of_an_earlier_run(left_over(folder, files.values()) if files else [], folder))
     say((*result.warnings, *without, *left), result.net.notes, quiet)
     if as_json:
         document = as_dict(result, files)
@@ -142,16 +143,6 @@ def _check_folder(folder: Path, outputs: tuple[str, ...]) -> None:
         raise click.UsageError(
             "-o names a folder, but --outputs none writes no files: leave out one", click.get_current_context()
         )
-
-
-def _left_over(folder: Path, files: Mapping[str, Path]) -> Iterator[str]:
-    """Warn of a folder that holds files of two runs."""
-    from geomdrap.export.outputs import left_over
-
-    names = left_over(folder, files.values()) if files else []
-    if names:
-        verb, them = ("is", "it") if len(names) == 1 else ("are", "them")
-        yield f"{', '.join(names)} in {folder} {verb} of an earlier run: remove {them}, or use another folder (-o)"
 
 
 def _refuse_guides(asked: dict[str, Any], other: str) -> None:

@@ -125,6 +125,7 @@ def prepare(
     """Read what the options name, and refuse what of them is wrong before anything is draped."""
     import geomdrap as gd
     from geomdrap.cli.acting import effects_of
+    from geomdrap.cli.pitch import require_room
     from geomdrap.cli.progress import announce_compilation
     from geomdrap.sweep import Job, Objective
 
@@ -133,6 +134,8 @@ def prepare(
     progress.step("Reading")
     surface = gd.read_surface(part, unit=unit, tolerance=tolerance, flip=flip)
     surface.require_drapable()
+    if pitch is not None:
+        require_room(surface, pitch)
     announce_compilation(quiet)
     reach = (blank[0] / 2, blank[1] / 2) if blank else None
     job = Job(surface, pitch, reach, limit_angle, effects, reference)

@@ -14,6 +14,7 @@ from made_parts import bumpy_sheet
 
 import geomdrap as gd
 from geomdrap.cli import cli
+from geomdrap.cli.plies import by_plies
 from geomdrap.surface import shapes
 from geomdrap.sweep import lay_plies, parse_plies
 from geomdrap.sweep.plies import thickness_factor
@@ -152,6 +153,43 @@ def test_ctrl_c_says_which_plies_are_written(
     assert result.stderr.splitlines()[-1] == f"Error: {words}".replace("drape/", f"{Path('drape')}{os.sep}")
     there = sorted(path.name for path in (tmp_path / "drape").iterdir()) if after else []
     assert there == [f"ply-{n}" for n in range(1, after + 1)]
+
+
+def test_what_is_said_of_several_plies_is_said_once_with_their_numbers() -> None:
+    assert by_plies([("a", "b"), ("b",), (), ("b", "b", "c")]) == ["ply 1: a", "plies 1, 2, 4: b", "ply 4: c"]
+    assert by_plies([(), ()]) == []
+
+
+def test_plies_and_files_of_an_earlier_run_are_warned_of(command: Callable[..., Result]) -> None:
+    command("--plies", "0,45,90", "--outputs", "json,dxf")
+    command("--outputs", "json")
+    result = command("--plies", "0", "--outputs", "json", "--json")
+    left = [
+        "drape.json, ply-2, ply-3 in drape are of an earlier run: remove them, or use another folder (-o)",
+        f"flat.dxf in {Path('drape', 'ply-1')} is of an earlier run: remove it, or use another folder (-o)",
+    ]
+    assert [line for line in result.stderr.splitlines() if "earlier" in line] == [f"Warning: {text}" for text in left]
+    assert json.loads(result.stdout)["warnings"][-2:] == left
+    assert "earlier" not in command("--plies", "0", "--outputs", "json", "-o", "fresh").stderr
+
+
+def test_elements_that_get_no_ply_are_warned_of_with_the_plies(command: Callable[..., Result]) -> None:
+    result = command("--plies", "0,45", "--outputs", "abaqus", "--blank", "60x60")
+    lines = [line for line in result.stderr.splitlines() if "have no ply" in line]
+    assert lines
+    assert lines[0].startswith("Warning: pl")
+
+
+@pytest.mark.parametrize("asked", [("drape", "--plies", "0"), ("sweep",), ("optimize",)])
+def test_a_pitch_that_there_is_no_room_for_is_refused_before_anything_is_draped(
+    command: Callable[..., Result], asked: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("geomdrap.fields.pieces.MOST_PIECES", 1000)
+    name, *more = asked
+    result = CliRunner().invoke(cli, [name, "saddle.stl", *more, "--pitch", "2"])
+    assert result.exit_code == 2
+    assert "a pitch of 2 mm is too small for saddle.stl" in result.stderr
+    assert "Draping" not in result.stderr
 
 
 def test_the_summary_has_a_line_per_ply(command: Callable[..., Result]) -> None:
