@@ -10,6 +10,7 @@ import click
 from click.core import ParameterSource
 
 from geomdrap.cli.elements import fe_mesh_of, ply_on
+from geomdrap.cli.folders import check_folder
 from geomdrap.cli.lazy import COMMAND
 from geomdrap.cli.options import (
     cloth_options,
@@ -103,7 +104,7 @@ def drape(
     from geomdrap.export.outputs import Extras, left_over, write_all
     from geomdrap.export.report_json import as_dict, is_incomplete
 
-    _check_folder(folder, outputs)
+    check_folder(folder, outputs)
     context = click.get_current_context()
     if context.get_parameter_source("angle") == ParameterSource.COMMANDLINE:
         _refuse_guides(asked, "--angle")
@@ -131,18 +132,6 @@ def drape(
     elif not quiet:
         click.echo(summary(result, files))
     return int(strict and is_incomplete(result))
-
-
-def _check_folder(folder: Path, outputs: tuple[str, ...]) -> None:
-    """Refuse, before anything is computed, a folder that cannot be written or that nothing would go to."""
-    from geomdrap.export.whole import check_writable
-
-    if outputs:
-        check_writable(folder)
-    elif click.get_current_context().get_parameter_source("folder") == ParameterSource.COMMANDLINE:
-        raise click.UsageError(
-            "-o names a folder, but --outputs none writes no files: leave out one", click.get_current_context()
-        )
 
 
 def _refuse_guides(asked: dict[str, Any], other: str) -> None:

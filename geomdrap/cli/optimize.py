@@ -83,15 +83,16 @@ def optimize(
       geomdrap optimize hood.stl --origins centroid --angles 0:170:10 --budget 100 --json
     """
     import geomdrap as gd
+    from geomdrap.cli.folders import check_folder
     from geomdrap.cli.messages import print_json, say
     from geomdrap.cli.optimize_summary import summary
     from geomdrap.cli.progress import Progress
-    from geomdrap.cli.sweeping import check_folder, prepare, recorded
+    from geomdrap.cli.sweeping import prepare, recorded
     from geomdrap.export.optimize_json import as_dict
     from geomdrap.export.sweep_outputs import write_optimum
     from geomdrap.sweep.optimize import first_headings
 
-    check_folder(folder, outputs)
+    check_folder(folder, outputs, resume)
     headings = gd.sweep.parse_angles(angles) if angles is not None else None
     with Progress(quiet) as progress:
         ready = prepare(progress, quiet, **asked)

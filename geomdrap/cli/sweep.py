@@ -85,16 +85,17 @@ def sweep(
       geomdrap sweep hood.stl --origins seeds.csv --effect slip:coefficient=0.6 --resume
       geomdrap sweep hood.stl --origins grid:20x20 --scheduler tcp://10.0.0.5:8786 --json
     """
+    from geomdrap.cli.folders import check_folder
     from geomdrap.cli.messages import print_json, say
     from geomdrap.cli.progress import Progress
     from geomdrap.cli.sweep_summary import summary
-    from geomdrap.cli.sweeping import check_folder, prepare, recorded
+    from geomdrap.cli.sweeping import prepare, recorded
     from geomdrap.export.sweep_json import as_dict
     from geomdrap.export.sweep_outputs import write_sweep
     from geomdrap.sweep import cases_of, locate_origins, parse_angles, run
     from geomdrap.sweep.objective import parse_criteria
 
-    check_folder(folder, outputs)
+    check_folder(folder, outputs, resume)
     headings, criteria = parse_angles(angles), parse_criteria(pareto)
     with Progress(quiet) as progress:
         ready = prepare(progress, quiet, **asked)

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+RESUME = "Go on with the rows that the folder holds already; without it they are set aside as rows-1.jsonl."
+
 SWEEP_OUTPUTS = ("json", "csv", "png", "best")  # the keys of export.sweep_outputs.SWEEP_OUTPUTS; a test compares
 
 
@@ -58,7 +60,7 @@ def objective_option(function: F) -> F:
 
 def resume_option(function: F) -> F:
     """Add --resume."""
-    return click.option("--resume", is_flag=True, help="Go on with the rows that the folder holds already.")(function)
+    return click.option("--resume", is_flag=True, help=RESUME)(function)
 
 
 def place_options(function: F) -> F:
@@ -161,6 +163,8 @@ def recorded(
     known = {row.key for row in earlier}
     done = sum((case.origin, case.angle) in known for case in cases)
     pool = ready.pool(len(cases) - done + more)
+    if folder and not resume:
+        _set_aside(folder / FILE)
     record = Record(folder / FILE, ready.job, earlier) if folder else None
     count = Counter(progress, len(cases) + more, done, record, "at most " if more else "")
     try:
@@ -170,6 +174,17 @@ def recorded(
     finally:
         if record:
             record.close()
+
+
+def _set_aside(path: Path) -> None:
+    """Keep rows that may have taken hours under another name, and say so."""
+    from geomdrap.cli.messages import say
+    from geomdrap.sweep.record import set_aside
+
+    kept = set_aside(path)
+    if kept is not None:
+        what = "(to go on with them use --resume; remove them if nobody needs them)"
+        say([f"{path} held rows of an earlier run, which are kept in {kept} {what}"], (), quiet=True)
 
 
 class Counter:
@@ -215,11 +230,3 @@ def cores() -> int:
     """Cores that this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)
     return len(affinity(0)) if affinity else os.cpu_count() or 1
-
-
-def check_folder(folder: Path, outputs: tuple[str, ...]) -> None:
-    """Refuse, before anything is computed, a folder that cannot be written."""
-    from geomdrap.export.whole import check_writable
-
-    if outputs:
-        check_writable(folder)

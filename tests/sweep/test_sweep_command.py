@@ -136,6 +136,31 @@ def test_resume_is_refused_for_another_part_and_the_rows_stay(run: Callable[...,
     assert (tmp_path / "sweep" / "rows.jsonl").read_bytes() == before
 
 
+def test_without_resume_the_rows_of_an_earlier_run_are_kept_and_it_is_said(
+    run: Callable[..., Result], tmp_path: Path
+) -> None:
+    asked = ("-j", 1, "--pitch", 30, "--outputs", "json", "-q")
+    assert run("sweep", "saddle.stl", "--angles", "0,10", *asked).stderr == ""
+    rows, kept = (tmp_path / "sweep" / name for name in ("rows.jsonl", "rows-1.jsonl"))
+    before = rows.read_bytes()
+    result = run("sweep", "saddle.stl", "--angles", "20", *asked)
+    name, other = Path("sweep") / "rows.jsonl", Path("sweep") / "rows-1.jsonl"
+    assert f"Warning: {name} held rows of an earlier run, which are kept in {other} " in result.stderr
+    assert kept.read_bytes() == before
+    assert len(rows.read_text().splitlines()) == 1 + 1
+
+
+@pytest.mark.parametrize("command", ["sweep", "optimize"])
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [(("-o", "here"), "-o names a folder, but"), (("--resume",), "--resume needs the rows of a folder")],
+)
+def test_a_folder_or_rows_to_go_on_with_are_refused_where_nothing_is_written(
+    run: Callable[..., Result], command: str, asked: tuple[str, ...], words: str
+) -> None:
+    assert words in _error(run(command, "saddle.stl", "--outputs", "none", *asked))
+
+
 def test_failed_cases_are_rows_with_a_reason_and_are_counted(run: Callable[..., Result]) -> None:
     part = "solid a\n" + "".join(
         f"facet normal 0 0 1\nouter loop\nvertex {x} 0 {z}\nvertex {x + s} 0 {z}\nvertex {x} {s} {z}\nendloop\nendfacet\n"
