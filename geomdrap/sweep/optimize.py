@@ -38,9 +38,9 @@ class Step:
     seed: float
     heading: float
 
-    def halved(self) -> Step:
-        """Half as far."""
-        return Step(0.5 * self.seed, 0.5 * self.heading)
+    def halved(self, least: Step) -> Step:
+        """Half as far, but as far as ``least``."""
+        return Step(max(0.5 * self.seed, least.seed), max(0.5 * self.heading, least.heading))
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,10 +102,10 @@ def optimize(
     """The seed and heading that make the objective smallest.
 
     First the ``cases`` are swept, and some more with seeds scattered between theirs; then the best of all, from
-    different origins, are refined on the surface: the seed
-    moves along geodesics in the directions of the yarns, the heading turns, both together; where nothing around is
-    better, the steps are halved (pattern search: R. Hooke and T. A. Jeeves, J. ACM 8, 1961). ``budget`` is the
-    greatest number of drapes after the sweep. Every value is that of a real drape, and the best of all is returned.
+    different origins, are refined on the surface: the seed moves along geodesics in the directions of the yarns, the
+    heading turns, both together; where nothing around is better, the steps are halved, down to a quarter of the pitch
+    and of a degree, which are tried too (pattern search: R. Hooke and T. A. Jeeves, J. ACM 8, 1961). ``budget`` is
+    the greatest number of drapes after the sweep. Every value is that of a real drape; the best of all is returned.
     ``pool``, ``done`` and ``on_row`` as for ``run``.
     Raises SweepError where there is no case, none can be draped, or the objective is unknown.
     """
@@ -180,8 +180,8 @@ def first_step(job: Job, cases: Sequence[Case], pitch: float) -> Step:
 
 def _refine(job: Job, rows: Rows, objective: Objective, start: Row, step: Step, most: int) -> tuple[list[Row], bool]:
     """The rows from ``start`` to where no step finds a better one, and whether the budget sufficed."""
-    path = [start]
-    while step.seed >= FINEST * start.pitch or step.heading >= FINEST_ANGLE:
+    path, finest = [start], Step(FINEST * start.pitch, FINEST_ANGLE)
+    while True:
         for moves in (AXES, EDGES, CORNERS):
             around = _around(job, path[-1], step, moves)
             if len(rows.found) + sum(case not in rows.found for case in around) > most:
@@ -191,8 +191,9 @@ def _refine(job: Job, rows: Rows, objective: Objective, start: Row, step: Step, 
                 path.append(best)
                 break
         else:
-            step = step.halved()
-    return path, True
+            if step == finest:
+                return path, True
+            step = step.halved(finest)
 
 
 def _around(job: Job, row: Row, step: Step, moves: Sequence[tuple[int, int, int]]) -> list[Case]:

@@ -66,8 +66,7 @@ def test_the_optimum_is_never_worse_than_the_sweep_and_is_a_real_drape(objective
     swept = run(job, cases, objective)
     assert found.of_sweep == swept.best
     assert wanted.score(found.best) <= wanted.score(swept.best)
-    net = gd.drape(job.surface, found.best.origin, found.best.angle, 8.0, project=True)
-    assert gd.evaluate(net).statistics.max == pytest.approx(found.best.max_shear, abs=0.05)
+    assert job.row(Case(*found.best.key)) == found.best
     assert job.surface.nearest([found.best.origin]).distance[0] < 1e-6
 
 
@@ -81,17 +80,19 @@ def test_the_way_falls_step_by_step_to_the_best() -> None:
     assert found.path[-1] == found.best
 
 
-def test_no_small_step_from_a_converged_optimum_is_better() -> None:
-    job = Job(bumpy_sheet(3), pitch=8.0)
+@pytest.mark.parametrize("seed", [4, pytest.param(3, marks=pytest.mark.slow)])
+def test_no_step_of_a_quarter_of_the_pitch_or_of_a_degree_from_a_converged_optimum_is_better(seed: int) -> None:
+    job = Job(bumpy_sheet(seed), pitch=8.0)
     found = optimize(job, _begin(job.surface, "grid:2x2", "0:60:30"), budget=2500)
     assert found.converged
     x, y, z = found.best.origin
-    for angle in (found.best.angle - FINEST_ANGLE, found.best.angle + FINEST_ANGLE):
-        assert run(job, cases_of([(x, y, z)], [angle])).best.max_shear >= found.best.max_shear - 0.05
-    for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-        aside = job.surface.nearest([[x + FINEST * 8.0 * dx, y + FINEST * 8.0 * dy, z]]).point[0]
-        moved = cases_of([(float(aside[0]), float(aside[1]), float(aside[2]))], [found.best.angle])
-        assert run(job, moved).best.max_shear >= found.best.max_shear - 0.3
+    score = found.sweep.objective.score
+    for turn in (-FINEST_ANGLE, FINEST_ANGLE):
+        assert score(job.row(Case((x, y, z), found.best.angle + turn))) >= score(found.best)
+    frame = gd.drape(job.surface, found.best.origin, found.best.angle, 8.0)
+    for direction in (frame.warp0, -frame.warp0, frame.weft0, -frame.weft0):
+        aside = gd.trace(job.surface, found.best.origin, direction, FINEST * 8.0).point
+        assert score(job.row(Case(tuple(aside.tolist()), found.best.angle))) >= score(found.best)
 
 
 def test_where_an_effect_displaces_the_ply_a_step_leads_to_a_drape_one_step_away() -> None:
