@@ -35,7 +35,7 @@ THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
 @click.command()
 @part_argument
 @seed_options
-@cloth_options
+@cloth_options("from the part's size, without --plies halved while the checks call it coarse, and said")
 @effect_options
 @reading_options
 @folder_option("drape", "Folder for the result files; it is made if it is missing.")

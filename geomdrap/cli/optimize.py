@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from geomdrap.cli.lazy import COMMAND
 from geomdrap.cli.options import (
     cloth_options,
     effect_options,
@@ -42,7 +43,7 @@ from geomdrap.cli.values import Names
     help="Most drapes of the search, after those from which it begins.",
 )
 @lay_options
-@cloth_options
+@cloth_options()
 @effect_options
 @objective_option
 @place_options
@@ -112,7 +113,8 @@ def optimize(
             progress.step("Draping the best")
             best = result.sweep.draped_best()
             progress.step("Writing")
-            files = write_optimum(result, best, folder, outputs, progress.share, notes)
+            command = click.get_current_context().meta.get(COMMAND, "")
+            files = write_optimum(result, best, folder, outputs, progress.share, notes, command)
     say(best.warnings, (*notes, *best.net.notes), quiet)
     if as_json:
         print_json(as_dict(result, best, files, notes))

@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from geomdrap.cli.lazy import COMMAND
 from geomdrap.cli.options import (
     cloth_options,
     effect_options,
@@ -37,7 +38,7 @@ from geomdrap.cli.values import Names
     "normal; a file has columns x, y, z in mm.  [default: centroid]",
 )
 @lay_options
-@cloth_options
+@cloth_options()
 @effect_options
 @objective_option
 @click.option(
@@ -111,7 +112,8 @@ def sweep(
             progress.step("Draping the best")
             best = result.draped_best()
             progress.step("Writing")
-            files = write_sweep(result, best, folder, outputs, progress.share, notes)
+            command = click.get_current_context().meta.get(COMMAND, "")
+            files = write_sweep(result, best, folder, outputs, progress.share, notes, command)
     say(best.warnings, (*notes, *best.net.notes), quiet)
     if as_json:
         print_json(as_dict(result, best, files, notes))

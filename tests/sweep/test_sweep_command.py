@@ -75,6 +75,14 @@ def test_rows_are_ranked_in_the_json_and_the_table(run: Callable[..., Result], t
 
 
 @pytest.mark.parametrize("command", ["sweep", "optimize"])
+def test_the_report_of_the_best_shows_the_command(run: Callable[..., Result], tmp_path: Path, command: str) -> None:
+    asked = ("--origins", "centroid", "--angles", "45", "--pitch", 30, "-j", 1, "--outputs", "best")
+    run(command, "saddle.stl", *asked, *(("--budget", 0) if command == "optimize" else ()))
+    report = (tmp_path / command / "best" / "report.html").read_text()
+    assert f"geomdrap {command} saddle.stl --origins centroid --angles 45 --pitch 30" in report
+
+
+@pytest.mark.parametrize("command", ["sweep", "optimize"])
 def test_the_json_says_what_stderr_says_and_how_plies_were_laid(
     run: Callable[..., Result], tmp_path: Path, command: str
 ) -> None:
