@@ -15,7 +15,7 @@ from geomdrap.geodesic.trace import Stop, trace
 from geomdrap.sweep.case import Case, Job
 from geomdrap.sweep.objective import DEFAULT, Objective
 from geomdrap.sweep.pool import Pool, ThroughExecutor
-from geomdrap.sweep.ranking import ranked
+from geomdrap.sweep.ranking import best_of_origins, ranked
 from geomdrap.sweep.row import Row
 from geomdrap.sweep.run import Sweep, require_best, rows_of
 
@@ -121,7 +121,7 @@ def optimize(
         first_and_more = ranked([*first, *more], wanted)
         step = first_step(job, list(rows.found), first[0].pitch)
         paths, converged = [], True
-        for start in starts(first_and_more):
+        for start in best_of_origins(first_and_more)[:STARTS]:
             path, finished = _refine(job, rows, wanted, start, step, swept + budget)
             paths.append(path)
             converged = converged and finished
@@ -146,7 +146,7 @@ def scattered(job: Job, rows: Sequence[Row], count: int) -> list[Case]:
     ``rows`` are those of the sweep, the best first: a place takes the heading of the best one at the nearest origin,
     and that turned by 45 degrees.
     """
-    known = starts(rows, len(rows))
+    known = best_of_origins(rows)
     places = [locate(job.surface, row.asked)[1] for row in known]
     headings = [row.angle for row in known]
     middle = job.surface.points[job.surface.triangles].mean(axis=1)
@@ -159,15 +159,6 @@ def scattered(job: Job, rows: Sequence[Row], count: int) -> list[Case]:
         cases += [Case((x, y, z), (headings[near] + turn) % HALF_TURN) for turn in (0.0, 45.0)]
         away = np.minimum(away, np.linalg.norm(middle - found, axis=1)).min(axis=0, keepdims=True)
     return cases
-
-
-def starts(rows: Sequence[Row], most: int = STARTS) -> list[Row]:
-    """The best of ranked rows, each of another origin."""
-    by_origin: dict[object, Row] = {}
-    for row in rows:
-        if row.reason is None:
-            by_origin.setdefault(row.asked, row)
-    return list(by_origin.values())[:most]
 
 
 def first_step(job: Job, cases: Sequence[Case], pitch: float) -> Step:
