@@ -24,6 +24,7 @@ from geomdrap.cli.options import (
     reading_options,
     seed_options,
 )
+from geomdrap.cli.values import Numbers
 
 if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
@@ -54,6 +55,7 @@ THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
 )
 @click.option(
     "--plies",
+    type=Numbers(),
     metavar="DEG,DEG,...",
     help="A stack instead of one ply: angles from --angle, the tool's side first, each ply draped on those below it.",
 )
@@ -71,7 +73,7 @@ THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
 def drape(
     folder: Path,
     outputs: tuple[str, ...],
-    plies: str | None,
+    plies: tuple[float, ...] | None,
     onto: Path | None,
     fe_axis: tuple[float, float, float] | None,
     ply_thickness: float | None,

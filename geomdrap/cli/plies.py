@@ -16,24 +16,24 @@ if TYPE_CHECKING:
 
 
 def drape_plies(
-    plies: str, extras: Extras, folder: Path, outputs: tuple[str, ...], strict: bool, as_json: bool, quiet: bool,
-    **asked: Any,
+    plies: tuple[float, ...], extras: Extras, folder: Path, outputs: tuple[str, ...], strict: bool, as_json: bool,
+    quiet: bool, **asked: Any,
 ) -> int:  # fmt: skip
-    """Drape the plies of a stack, write and print them; the exit code."""
+    """Drape the plies of a stack, at these angles in degrees, write and print them; the exit code."""
     from geomdrap.cli.elements import ply_on
     from geomdrap.cli.messages import print_json, say
     from geomdrap.cli.progress import Progress, announce_compilation
     from geomdrap.export.plies_outputs import as_dict
     from geomdrap.export.report_json import is_incomplete
-    from geomdrap.sweep import lay_plies, parse_plies
+    from geomdrap.sweep import lay_plies
 
-    angles, thickness = parse_plies(plies), extras.ply_thickness
+    thickness = extras.ply_thickness
     assert thickness is not None
     with Progress(quiet) as progress:
         surface, laid = _read(progress, lambda: announce_compilation(quiet), **asked)
         progress.step("Draping plies")
         stack = lay_plies(
-            surface, angles, thickness, **laid, on_ply=lambda ply: progress.share(ply.number / len(angles))
+            surface, plies, thickness, **laid, on_ply=lambda ply: progress.share(ply.number / len(plies))
         )
         progress.step("Writing")
         elements = [ply_on(ply.drape, None, None, outputs) for ply in stack]

@@ -16,7 +16,7 @@ import geomdrap as gd
 from geomdrap.cli import cli
 from geomdrap.cli.plies import by_plies
 from geomdrap.surface import shapes
-from geomdrap.sweep import lay_plies, parse_plies
+from geomdrap.sweep import lay_plies
 from geomdrap.sweep.plies import thickness_factor
 
 
@@ -94,11 +94,9 @@ def test_a_thickness_that_is_not_positive_is_refused(thickness: float) -> None:
         lay_plies(bumpy_sheet(), [0.0], thickness)
 
 
-def test_plies_are_read_in_their_order_and_may_come_again() -> None:
-    assert parse_plies("0,45,-45, 90,0") == (0.0, 45.0, -45.0, 90.0, 0.0)
-    for text in ("", "0,,90", "up", "nan", "1_0"):
-        with pytest.raises(gd.DrapeError, match="0,45,-45,90"):
-            parse_plies(text)
+def test_more_plies_than_can_be_meant_are_refused() -> None:
+    with pytest.raises(gd.DrapeError, match="1001 plies are more than the 1000"):
+        lay_plies(bumpy_sheet(), [0.0] * 1001, 0.1)
 
 
 @pytest.fixture
@@ -193,14 +191,17 @@ def test_a_pitch_that_there_is_no_room_for_is_refused_before_anything_is_draped(
 
 
 def test_the_summary_has_a_line_per_ply(command: Callable[..., Result]) -> None:
-    lines = command("--plies", "0,90", "--outputs", "none").stdout.splitlines()
-    assert [line.split()[:2] for line in lines if line.lstrip()[:1].isdigit()] == [["1", "0"], ["2", "90"]]
+    lines = command("--plies", "0,-45, 0", "--outputs", "none").stdout.splitlines()
+    assert [line.split()[:2] for line in lines if line.lstrip()[:1].isdigit()] == [["1", "0"], ["2", "-45"], ["3", "0"]]
 
 
 @pytest.mark.parametrize(
     ("asked", "words"),
     [
-        (("--plies", "0,up"), "'up' is not a number of degrees"),
+        *(
+            (("--plies", text), f"'{text}' is not a finite number, or several with commas")
+            for text in ("0,up", "", "0,,90", "nan", "1_0")
+        ),
         (("--plies", "0", "--ply-thickness", "0"), "0 is not a finite number above 0"),
         (("--plies", "0,90", "--fe-axis", "1,0,0"), "take one ply: leave --plies out"),
     ],
