@@ -192,7 +192,11 @@ def test_a_pitch_that_there_is_no_room_for_is_refused_before_anything_is_draped(
 
 def test_the_summary_has_a_line_per_ply(command: Callable[..., Result]) -> None:
     lines = command("--plies", "0,-45, 0", "--outputs", "none").stdout.splitlines()
-    assert [line.split()[:2] for line in lines if line.lstrip()[:1].isdigit()] == [["1", "0"], ["2", "-45"], ["3", "0"]]
+    assert [line.split()[:2] for line in lines if line.lstrip()[:1].isdigit()] == [
+        ["1", "0"],
+        ["2", "-45"],
+        ["3", "0"],
+    ]
 
 
 @pytest.mark.parametrize(
