@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,12 +24,13 @@ from geomdrap.cli.options import (
     reading_options,
     seed_options,
 )
-from geomdrap.cli.values import Numbers
+from geomdrap.cli.values import NamedPath, Numbers
 
 if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
     from geomdrap.fields import Drape
 
+GUIDES = ("warp_guide", "weft_guide")
 THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
 
 
@@ -43,13 +44,13 @@ THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
 @outputs_option
 @click.option(
     "--warp-guide",
-    type=click.Path(path_type=Path),
+    type=NamedPath(),
     metavar="FILE.csv",
     help="Curve on the part (columns x, y, z) that the warp through the origin follows, in place of --angle.",
 )
 @click.option(
     "--weft-guide",
-    type=click.Path(path_type=Path),
+    type=NamedPath(),
     metavar="FILE.csv",
     help="The same for the weft; with both the ply is laid from where they cross.",
 )
@@ -117,7 +118,8 @@ def drape(
         if onto is not None or fe_axis is not None:
             raise click.UsageError("--onto and --fe-axis take one ply: leave --plies out", context)
         extras = Extras(context.meta.get(COMMAND, ""), None, ply_thickness or THICKNESS, paper)
-        return drape_plies(plies, extras, folder, outputs, strict, as_json, quiet, **asked)
+        laid = {name: value for name, value in asked.items() if name not in GUIDES}
+        return drape_plies(plies, extras, folder, outputs, strict, as_json, quiet, **laid)
     mesh, outputs = fe_mesh_of(onto, outputs)
     with Progress(quiet) as progress:
         result = compute(progress, lambda: announce_compilation(quiet), **asked)
@@ -136,14 +138,12 @@ def drape(
     return int(strict and is_incomplete(result))
 
 
-def _refuse_guides(asked: dict[str, Any], other: str) -> None:
-    """Refuse guide curves beside an option that says something else; without that they are taken away."""
-    for name in ("warp_guide", "weft_guide"):
+def _refuse_guides(asked: Mapping[str, Any], other: str) -> None:
+    """Refuse guide curves beside an option that says something else."""
+    for name in GUIDES:
         if asked[name] is not None:
             option = "--" + name.replace("_", "-")
             raise click.UsageError(f"{option} and {other} contradict each other", click.get_current_context())
-        if other == "--plies":
-            del asked[name]
 
 
 def read_guides(**files: Path | None) -> dict[str, Any]:

@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
+import click
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
@@ -14,6 +15,8 @@ from made_parts import bumpy_sheet
 
 import geomdrap as gd
 from geomdrap.cli import cli
+from geomdrap.cli.drape import THICKNESS
+from geomdrap.cli.drape import drape as drape_command
 from geomdrap.cli.plies import by_plies
 from geomdrap.surface import shapes
 from geomdrap.sweep import lay_plies
@@ -214,3 +217,17 @@ def test_bad_plies_are_said(command: Callable[..., Result], asked: tuple[str, ..
     result = command(*asked)
     assert result.exit_code == 2
     assert words in result.stderr
+
+
+def test_the_help_names_the_thickness_that_plies_have_if_none_is_given() -> None:
+    option = next(p for p in drape_command.params if p.name == "ply_thickness")
+    assert isinstance(option, click.Option)
+    assert f"with --plies {THICKNESS:g}]" in str(option.help)
+
+
+def test_guide_curves_are_refused_beside_plies_and_need_a_name(command: Callable[..., Result]) -> None:
+    for guide in ("--warp-guide", "--weft-guide"):
+        result = command("--plies", "0", guide, "spine.csv")
+        assert (result.exit_code, f"{guide} and --plies contradict each other" in result.stderr) == (2, True)
+        result = command(guide, "")
+        assert (result.exit_code, "the name is empty" in result.stderr) == (2, True)

@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import click
 import pytest
 from click.testing import CliRunner, Result
 
@@ -285,9 +286,23 @@ def test_ctrl_c_after_the_last_row_says_that_the_rows_are_there(
 
 def test_the_outputs_offered_are_those_that_can_be_written() -> None:
     from geomdrap.cli.sweeping import SWEEP_OUTPUTS as OFFERED
-    from geomdrap.export.sweep_outputs import SWEEP_OUTPUTS
+    from geomdrap.export.sweep_outputs import OPTIMIZE_OUTPUTS, SWEEP_OUTPUTS
 
-    assert tuple(SWEEP_OUTPUTS) == OFFERED
+    assert tuple(SWEEP_OUTPUTS) == tuple(OPTIMIZE_OUTPUTS) == OFFERED
+
+
+def test_the_defaults_of_the_commands_are_those_of_the_library() -> None:
+    from geomdrap.sweep import objective
+    from geomdrap.sweep.optimize import BUDGET
+
+    def default(command: str, name: str) -> object:
+        context = click.Context(cli, info_name="geomdrap")
+        return next(p.default for p in cli.get_command(context, command).params if p.name == name)
+
+    for command in ("sweep", "optimize"):
+        assert default(command, "objective") == objective.DEFAULT
+    assert objective.parse_criteria(default("sweep", "pareto")) == objective.PARETO
+    assert default("optimize", "budget") == BUDGET
 
 
 def test_without_outputs_nothing_is_written(run: Callable[..., Result], tmp_path: Path) -> None:
