@@ -163,9 +163,13 @@ def recorded(
     known = {row.key for row in earlier}
     done = sum((case.origin, case.angle) in known for case in cases)
     pool = ready.pool(len(cases) - done + more)
-    if folder and not resume:
-        _set_aside(folder / FILE)
-    record = Record(folder / FILE, ready.job, earlier) if folder else None
+    try:
+        if folder and not resume:
+            _set_aside(folder / FILE)
+        record = Record(folder / FILE, ready.job, earlier) if folder else None
+    except BaseException:
+        pool.close()  # nothing will run on it
+        raise
     count = Counter(progress, len(cases) + more, done, record, "at most " if more else "")
     try:
         yield Running(pool, earlier, count)
