@@ -138,14 +138,15 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
     model, scatter = rounds[0].base, rounds[0].scatter[0]
     if names:
         model, scatter = rounds[len(names) - 1].trial(names[-1])
-    experiment, model = _final(experiment, model, scatter)
+    meant = experiment
+    experiment, model = _final(meant, model, scatter)
     left = left_over(experiment, model, scatter)
     alike = rivals(rounds[len(names) - 1].evidence) if names else ()
     # a plateau that the model found does not foretell is no matter of chance: nothing else makes one
     if _locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):
         names, alike = [LOCKING], (LOCKING,)
-        experiment, model = _final(experiment, *rounds[0].trial(LOCKING))
-        scatter = rounds[0].trial(LOCKING)[1]
+        model, scatter = rounds[0].trial(LOCKING)
+        experiment, model = _final(meant, model, scatter)
         left = left_over(experiment, model, scatter)
     verdict, candidates = _verdict(experiment, model, scatter, names, alike, left, worth_more(rounds[0], model))
     steps = _steps(experiment, rounds, names, model)
