@@ -175,7 +175,7 @@ def _final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Exp
     whiten = judge_of(experiment, rows).whiten(scatter) if whole else white(experiment)
     if any(make(name).costly for name in model.model.effects):
         finer = experiment.finer()
-        return finer, refined(finer, whiten, model)
+        return finer, refined(finer, whiten, model, experiment.pitches[1] / finer.pitches[1])
     if scatter.size > 0.0 and whole:
         model = refit(experiment, whiten, model)
     return experiment, with_fresh_slopes(experiment, model)

@@ -77,7 +77,7 @@ class Model:
 class Fitted:
     """A model fitted to an experiment: ``values`` (p,), and the fit's ``residual`` and ``slopes``, ``chi2``.
 
-    ``doubt`` (p,): standard deviations that the pitch of the net adds to the values, as measured; None for none.
+    ``doubt`` (p,): standard deviations that the pitch of the net adds to the values; None where it was not measured.
     """
 
     model: Model
@@ -213,10 +213,11 @@ def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     return Fitted(model, fit(predict, experiment.measured, whiten, old.values, model.steps, low, high))
 
 
-def refined(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
+def refined(experiment: Experiment, whiten: Whiten, old: Fitted, ratio: float) -> Fitted:
     """A costly model fitted on from where it was, on the finer net of ``experiment``, with the slopes that it has.
 
-    Nets are of second order in the pitch: of what its halving changed in the values, a third is left.
+    Nets are of second order in the pitch: of what a pitch ``ratio`` times smaller changed in the values,
+    1/(ratio² - 1) is left, a third where it was halved. Where no step was taken, nothing is known of it.
     """
     predict = predictor(experiment, old.model)
     low, high = old.model.bounds
@@ -232,7 +233,8 @@ def refined(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     lost = np.isnan(old.fit.residual)
     chi2 = float((whiten(residual) ** 2).sum())
     fit = Fit(values, np.where(lost, np.nan, residual), old.fit.slopes, chi2)
-    return Fitted(old.model, fit, np.abs(values - old.values) / 3.0)
+    measured = ratio > 1.0 and values is not old.values
+    return Fitted(old.model, fit, np.abs(values - old.values) / (ratio**2 - 1.0) if measured else None)
 
 
 def _filled(residual: np.ndarray, before: np.ndarray) -> np.ndarray:
