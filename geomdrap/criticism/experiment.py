@@ -109,12 +109,6 @@ class Experiment:
         """The same experiment with the net for what is costly twice as fine, but no finer than the other one."""
         return replace(self, pitches=(self.pitches[0], max(0.5 * self.pitches[1], self.pitches[0])), coarseness={})
 
-    def without(self, rows: np.ndarray) -> Experiment:
-        """The same experiment without those points (n,) bool."""
-        keep = self.mask & ~rows[:, None]
-        kept = keep.T[self.mask.T]
-        return replace(self, mask=keep, noise=self.noise[kept], measured=self.measured[kept])
-
     def noise_by_kind(self) -> tuple[np.ndarray | None, np.ndarray | None]:
         """Typical noise of positions (mm) and of shear (degrees), for every point (n,); None where not measured."""
         channel = np.array(self.channels)[self.channel_of()]

@@ -119,15 +119,11 @@ def unfitted(experiment: Experiment) -> Fitted:
     return Fitted(model, Fit(model.neutral, residual, nothing, float(np.nansum((residual / experiment.noise) ** 2))))
 
 
-def fit_placement(experiment: Experiment, whiten: Whiten, start: np.ndarray | None = None) -> Fitted:
+def fit_placement(experiment: Experiment, whiten: Whiten) -> Fitted:
     """The model without effects."""
     model = Model(())
-    low, high = model.bounds
-    begin = np.zeros(3) if start is None else start
-    return Fitted(
-        model,
-        fit(predictor(experiment, model), experiment.measured, whiten, begin, model.steps, low, high),
-    )
+    predict = predictor(experiment, model)
+    return Fitted(model, fit(predict, experiment.measured, whiten, model.neutral, model.steps, *model.bounds))
 
 
 def add_effect(
@@ -151,7 +147,7 @@ def add_effect(
     seen = None
     if slow and likely is not None:
         seen = glance(experiment, predict, whiten, likely, base, effect)
-        explained = kind.costly and is_noise(least, len(experiment.measured))  # else one look is too little
+        explained = kind.costly and _is_noise(least, len(experiment.measured))  # else one look is too little
         if seen.gain < LEAST_GAIN or (explained and _hopeless(whiten, base, seen.after, least)):
             return _not_fitted(model, base, seen)
     start = start_values(experiment, predict, whiten, base, effect, seen)
@@ -182,7 +178,7 @@ def _not_fitted(model: Model, base: Fitted, seen: Glance) -> Fitted:
     return Fitted(model, fit)
 
 
-def is_noise(chi2: float, values: int) -> bool:
+def _is_noise(chi2: float, values: int) -> bool:
     """Whether a chi-square is what noise alone gives to so many values."""
     return chi2 < values + 3.0 * math.sqrt(2.0 * values)
 
