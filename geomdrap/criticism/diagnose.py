@@ -1,7 +1,8 @@
 """``diagnose``: which physical effect the model lacks.
 
-Placement first; every effect tried on top of it, fitted together with it; the likeliest kept if it passes every test
-(see ``evidence``); then again on top of that, as long as something is left that needs a cause.
+Placement first; every effect tried on top of it, and fitted together with it where a first look promises something
+(see ``start``); the likeliest kept if it passes every test (see ``evidence``); then once more on top of that, if
+something is left that needs a cause.
 """
 
 from __future__ import annotations
@@ -199,7 +200,7 @@ def _locks(experiment: Experiment, first: Round) -> bool:
 
 
 def _least_scatter(of: Round) -> Scatter:
-    """The scatter that the likeliest of the models of a round leaves, which is the smallest."""
+    """The smallest scatter that any of the models of a round leaves."""
     return min(of.scatter, key=lambda s: s.size)
 
 
