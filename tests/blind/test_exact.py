@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from geomdrap.blind import sliding
 from geomdrap.blind.closing import closed
 from geomdrap.blind.lines import generators
 from geomdrap.blind.ply import lay
@@ -179,6 +180,13 @@ def test_yarns_that_slip_altogether_lie_on_circles_of_latitude_of_a_sphere():
     (far, turn), (near, less) = errors
     assert near < 0.3 * far and far < 0.03  # second order: a quarter
     assert less < 0.35 * turn and turn < 0.02
+
+
+def test_a_row_of_equations_of_a_wrong_shape_is_no_end_of_the_ply(monkeypatch):
+    banded = sliding._banded
+    monkeypatch.setattr(sliding, "_banded", lambda *given: banded(*given)[:, :-1])
+    with pytest.raises(ValueError, match=r"(?i)shape|dimension|size|compatible"):
+        lay(sphere(100.0, 60.0), Recipe(slip=1.0), 8.0)
 
 
 @pytest.mark.parametrize("part", ["dome", "saddle", "double-bump"])
