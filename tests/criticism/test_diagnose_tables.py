@@ -9,6 +9,8 @@ import pytest
 
 import geomdrap as gd
 from geomdrap.blind import make
+from geomdrap.criticism.experiment import Layup
+from geomdrap.criticism.prepare import prepare
 
 CHEAP = ("yarn-extension", "weave-skew", "springback")
 
@@ -61,6 +63,19 @@ def test_the_noise_of_directions_may_be_given_or_stand_in_the_table(tmp_path):
     a, b, c = (row(d, "weave-skew").values[0] for d in (first, second, third))
     assert (a.value, a.sigma) == pytest.approx((b.value, b.sigma), rel=1e-9)
     assert c.sigma > 1.5 * a.sigma
+
+
+def test_compare_and_diagnose_take_the_same_noise_of_directions(tmp_path):
+    surface, measurement, told = skewed(tmp_path, "directions")
+    compared = gd.compare(surface, measurement, **told)
+    layup = Layup(told["origin"], told["angle"])
+    experiment, notes = prepare(surface, measurement, layup, told["sigma_xyz"], told["sigma_shear"])
+    own = np.isin(np.array(experiment.channels)[experiment.channel_of()], ("warp", "weft"))
+    # the nets have other pitches, and with them the residuals whose neighbours are compared
+    assert np.unique(experiment.noise[own]) == pytest.approx(compared.noise_turn.typical, rel=0.05)
+    assert compared.noise_turn.typical == pytest.approx(told["sigma_shear"] / np.sqrt(2.0), rel=0.3)
+    assert compared.noise_turn.source == "neighbour differences of the residual"
+    assert any("noise of the direction" in note and "neighbour" in note for note in notes)
 
 
 def assert_same(first, second, close):
