@@ -216,7 +216,9 @@ def _outliers(experiment: Experiment, model: Fitted) -> tuple[Outlier, ...]:
     """Points that stand out from the final model; what stood out of a worse one may be no slip of the instrument."""
     net = experiment.draped(model.model.built(model.values), experiment.pitches[1])
     found = match(net, experiment.measurement)
-    return find_outliers(net, experiment.measurement, found, *experiment.noise_by_kind())
+    n = len(experiment.measurement)
+    noise = [None if sigma is None else np.full(n, sigma) for sigma in experiment.noise_by_kind()[:2]]
+    return find_outliers(net, experiment.measurement, found, *noise)
 
 
 def _verdict(

@@ -109,12 +109,15 @@ class Experiment:
         """The same experiment with the net for what is costly twice as fine, but no finer than the other one."""
         return replace(self, pitches=(self.pitches[0], max(0.5 * self.pitches[1], self.pitches[0])), coarseness={})
 
-    def noise_by_kind(self) -> tuple[np.ndarray | None, np.ndarray | None]:
-        """Typical noise of positions (mm) and of shear (degrees), for every point (n,); None where not measured."""
+    def noise_by_kind(self) -> tuple[float | None, float | None, float | None]:
+        """Typical noise of positions (mm), shear and directions (degrees); None where not measured."""
         channel = np.array(self.channels)[self.channel_of()]
-        typical = [self.noise[channel == name] for name in ("normal", "shear")]
-        n = len(self.measurement)
-        return tuple(np.full(n, np.median(t)) if len(t) else None for t in typical)  # type: ignore[return-value]
+        own = [self.noise[np.isin(channel, names)] for names in (("normal",), ("shear",), ("warp", "weft"))]
+        return tuple(float(np.median(noise)) if len(noise) else None for noise in own)  # type: ignore[return-value]
+
+    def noise_told(self) -> dict[str, float | None]:
+        """The typical noise by the names that it has as an argument, as of ``compare_net``."""
+        return dict(zip(("sigma_xyz", "sigma_shear", "sigma_direction"), self.noise_by_kind(), strict=True))
 
     def channel_of(self) -> np.ndarray:
         """Number of the channel of each value (m,)."""

@@ -9,6 +9,7 @@ import pytest
 
 import geomdrap as gd
 from geomdrap.blind import make
+from geomdrap.criticism.before_after import before_and_after
 from geomdrap.criticism.experiment import Layup
 from geomdrap.criticism.prepare import prepare
 
@@ -63,6 +64,10 @@ def test_the_noise_of_directions_may_be_given_or_stand_in_the_table(tmp_path):
     a, b, c = (row(d, "weave-skew").values[0] for d in (first, second, third))
     assert (a.value, a.sigma) == pytest.approx((b.value, b.sigma), rel=1e-9)
     assert c.sigma > 1.5 * a.sigma
+    # the pictures of a diagnosis and its words on what is left stand on the same noise
+    for d, told in ((first, 0.5), (third, 1.0)):
+        for comparison in before_and_after(d):
+            assert (comparison.noise_turn.source, comparison.noise_turn.typical) == ("given", pytest.approx(told))
 
 
 def test_compare_and_diagnose_take_the_same_noise_of_directions(tmp_path):
