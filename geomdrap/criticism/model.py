@@ -78,11 +78,13 @@ class Fitted:
     """A model fitted to an experiment: ``values`` (p,), and the fit's ``residual`` and ``slopes``, ``chi2``.
 
     ``doubt`` (p,): standard deviations that the pitch of the net adds to the values; None where it was not measured.
+    ``looked_at_only``: the last effect was looked at once and promised too little for more.
     """
 
     model: Model
     fit: Fit
     doubt: np.ndarray | None = None
+    looked_at_only: bool = False
 
     @property
     def values(self) -> np.ndarray:
@@ -175,7 +177,7 @@ def _not_fitted(model: Model, base: Fitted, seen: Glance) -> Fitted:
     away = seen.values - neutral
     slopes = np.column_stack([seen.signature / a if a else np.zeros(len(seen.signature)) for a in away])
     fit = Fit(np.append(base.values, neutral), base.fit.residual, np.hstack([base.fit.slopes, slopes]), base.fit.chi2)
-    return Fitted(model, fit)
+    return Fitted(model, fit, looked_at_only=True)
 
 
 def _is_noise(chi2: float, values: int) -> bool:

@@ -12,6 +12,7 @@ from geomdrap.blind import make
 from geomdrap.criticism.before_after import before_and_after
 from geomdrap.criticism.experiment import Layup
 from geomdrap.criticism.prepare import prepare
+from geomdrap.criticism.story import table_rows
 
 CHEAP = ("yarn-extension", "weave-skew", "springback")
 
@@ -134,3 +135,7 @@ def test_an_effect_that_takes_long_is_looked_at_once_where_there_is_nothing_for_
     d = gd.diagnose(surface, m, **told, effects=("weave-skew", "shear-stiffness"))
     assert d.verdict == "weave-skew"
     assert len(drapes) <= 3
+    # and both the table and the JSON say so of it, and of it alone
+    assert [(t.name, t.looked_at_only) for t in d.tried] == [("weave-skew", False), ("shear-stiffness", True)]
+    assert [row[1] == "looked at only" for row in table_rows(d)[1:]] == [False, True]
+    assert [e["looked_at_only"] for e in d.as_dict()["effects"]] == [False, True]
