@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.criticism.kept import kept
 from geomdrap.criticism.smooth import smoothed
 from geomdrap.fishnet import Effect, Net, drape
 from geomdrap.fishnet.effect import in_order, surface_with
@@ -79,10 +80,12 @@ class Experiment:
     def _coarseness(self, effects: Sequence[Effect]) -> np.ndarray:
         """What the fine net gives more than the coarse one (m,)."""
         key = "+".join(map(repr_of, in_order(effects)))
-        if key not in self.coarseness:
+
+        def make() -> np.ndarray:
             fine, coarse = (self._flat(self.draped(effects, pitch)) for pitch in self.pitches)
-            keep(self.coarseness, key, fine - coarse)
-        return self.coarseness[key]
+            return fine - coarse
+
+        return kept(self.coarseness, key, make, KEPT)
 
     def draped(self, effects: Sequence[Effect] = (), pitch: float | None = None) -> Net:
         """The model's net with effects, at the model's own pitch (mm) unless another is given."""
@@ -98,9 +101,7 @@ class Experiment:
         acting = [e for e in effects if e.stage == "surface"]
         others = [e for e in effects if e.stage != "surface"]
         key = "+".join(map(repr_of, in_order(acting)))
-        if key not in self.surfaces:
-            keep(self.surfaces, key, smoothed(surface_with(in_order(acting), self.surface)))
-        return self.surfaces[key], others
+        return kept(self.surfaces, key, lambda: smoothed(surface_with(in_order(acting), self.surface)), KEPT), others
 
     def _flat(self, net: Net) -> np.ndarray:
         return flatten(predicted(net, self.measurement, self.frames, self.channels), self.mask)
@@ -131,13 +132,6 @@ class Experiment:
 def repr_of(effect: Effect) -> str:
     """An effect with all digits of its values."""
     return f"{effect.name}{sorted(effect.values.items())}"
-
-
-def keep(kept: dict[str, Any], key: str, value: object) -> None:
-    """Keep a value, and no more than ``KEPT`` of them: the oldest goes."""
-    if len(kept) >= KEPT:
-        kept.pop(next(iter(kept)))
-    kept[key] = value
 
 
 def flatten(table: np.ndarray, mask: np.ndarray) -> np.ndarray:
