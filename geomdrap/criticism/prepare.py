@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.criticism.experiment import CHANNELS, COARSE, FINE, Experiment, Layup, flatten, predicted
+from geomdrap.criticism.smooth import note_on
 from geomdrap.errors import MeasurementError
 from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
 from geomdrap.measurement.match import Matched, match
@@ -42,7 +43,7 @@ def prepare(
     compared.
     """
     require_on_part(surface, measurement)
-    notes: list[str] = []
+    notes = [*note_on(surface)]
     measurement = thinned(measurement, notes)
     lay = replace(layup, pitch=None)
     pitches = _pitches(surface, measurement, layup)

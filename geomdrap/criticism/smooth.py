@@ -45,6 +45,17 @@ def smoothed(surface: Surface) -> Surface:
     return Surface(points, split, source=surface.source, face_numbers=numbers, notes=surface.notes)
 
 
+def note_on(surface: Surface) -> tuple[str, ...]:
+    """A sentence where a part has too many facets to be smoothed, none where not."""
+    count = len(surface.triangles)
+    if 4 * count <= MOST_FACETS:
+        return ()
+    return (
+        f"nets lie on the {count} facets of the part itself: only up to {MOST_FACETS // 4} are they rounded to the "
+        "smooth tool that they stand for",
+    )
+
+
 def _lifts(surface: Surface) -> np.ndarray:
     """How far the middle of each edge of each facet (m, 3, 3) lies over its chord, mm.
 

@@ -8,6 +8,8 @@ from made_parts import cube
 
 import geomdrap as gd
 from geomdrap.criticism import smooth
+from geomdrap.criticism.experiment import Layup
+from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.smooth import smoothed
 
 
@@ -59,6 +61,16 @@ def test_a_part_that_would_have_too_many_facets_is_left_as_it_is(monkeypatch, mo
     part = cap()
     monkeypatch.setattr(smooth, "MOST_FACETS", most * len(part.triangles))
     assert (smoothed(part) is part) == same
+
+
+@pytest.mark.parametrize(("most", "said"), [(4, False), (3, True)])
+def test_a_part_that_is_not_smoothed_for_its_many_facets_is_named_in_a_note(monkeypatch, most, said):
+    part = cap()
+    monkeypatch.setattr(smooth, "MOST_FACETS", most * len(part.triangles))
+    net = gd.drape(part, (0.0, 0.0, 60.0), 0.0, 5.0)
+    points = net.points[np.isfinite(net.points).all(axis=-1)]
+    notes = prepare(part, gd.Measurement("made", points), Layup((0.0, 0.0, 60.0), 0.0), sigma_xyz=0.1)[1]
+    assert any(f"on the {len(part.triangles)} facets of the part itself" in note for note in notes) == said
 
 
 def test_the_smooth_part_looks_the_same_way():
