@@ -45,8 +45,8 @@ class Resin:
     ``modulus`` MPa (instantaneous) and ``poisson``; ``relaxation``, the same for all moduli. ``strain``: ``hencky``,
     the total logarithmic strain, or ``green-naghdi``, the paper's rate form summed up step by step, or ``green``, the
     Saint Venant–Kirchhoff law, for comparison with other programs (the three differ in large strains only).
-    ``thickness``: ``incompressible``, thicker as the area falls, or ``constant``, the letter of Eq. 6. FormingError
-    where something is out of range.
+    ``thickness``: ``incompressible``, thicker as the area falls, or ``constant``, the letter of Eq. 6, which
+    ``green`` does not know. FormingError where something is out of range.
     """
 
     modulus: float = 45.0
@@ -63,6 +63,11 @@ class Resin:
             raise FormingError(f"there is no strain '{self.strain}'; choose {', '.join(STRAIN_FORMS)}")
         if self.thickness not in THICKNESS_RULES:
             raise FormingError(f"there is no thickness rule '{self.thickness}'; choose {', '.join(THICKNESS_RULES)}")
+        if self.strain == "green" and self.thickness == "constant":
+            raise FormingError(
+                "the strain 'green' takes the stress over the flat cloth and knows no constant thickness; choose "
+                "another strain, or the thickness rule 'incompressible'"
+            )
 
     @property
     def shear_modulus(self) -> float:

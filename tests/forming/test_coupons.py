@@ -236,6 +236,7 @@ def test_a_step_twice_the_limit_diverges_and_what_came_before_is_kept() -> None:
         (lambda: Resin(poisson=0.5), "below 0.5; got 0.5"),
         (lambda: Resin(strain="small"), "no strain 'small'"),
         (lambda: Resin(thickness="thin"), "no thickness rule 'thin'"),
+        (lambda: Resin(strain="green", thickness="constant"), "'green' .* knows no constant thickness"),
         (lambda: Cloth(thickness=0.0), "thickness of the cloth must be above 0 mm"),
         (lambda: Cloth(density=-1.0), "density of the cloth must be above 0"),
     ],
