@@ -84,8 +84,6 @@ def _trellis(angle: float) -> np.ndarray:
 def test_in_trellis_shear_the_rate_form_and_the_total_strain_are_one() -> None:
     """Nothing turns there, and the principal axes stay."""
     model, total = _deformed(resin_alone(), _trellis(np.deg2rad(50.0)))
-    _, summed = _deformed(resin_alone(strain="green-naghdi"), _trellis(np.deg2rad(50.0)), 1, 2000)
-    # along a straight line of gradients the path is not a trellis, its end is: step along the trellis instead
     state = start(make_model(model.sheet, resin_alone(strain="green-naghdi")))
     walker = make_model(model.sheet, resin_alone(strain="green-naghdi"))
     for angle in np.deg2rad(np.linspace(0.0, 50.0, 2001))[1:]:
