@@ -23,7 +23,7 @@ def test_the_picture_frame_has_the_force_of_the_closed_form(shear: float, force:
     g = np.deg2rad(shear)
     exact = 2.0 * 100.0 * float(trellis_slope(np.array(g))) / np.sin(0.25 * np.pi - 0.5 * g)
     assert exact == pytest.approx(force, abs=0.005)
-    assert result.forces["force"][-1] == pytest.approx(exact, rel=1e-6)
+    assert result.forces["force"][-1] == pytest.approx(exact, rel=1e-12)
     assert result.displacement[-1] == pytest.approx(
         200.0 * (np.cos(np.pi / 4 - g / 2) - np.cos(np.pi / 4)), rel=1e-12
     )
@@ -95,7 +95,10 @@ def test_bias_extension_has_force_and_shear_of_the_inextensible_net() -> None:
     ],
 )
 def test_off_axis_forces_are_those_of_the_inextensible_net(angle: float, cells: int, rows: tuple) -> None:
-    """T7, with yarns fifty times stiffer than aramid: 1.5 %. Nearer to the lock even they stretch by as much."""
+    """T7, with yarns fifty times stiffer than aramid: 1.5 %.
+
+    Not less, since the mesh is coarse, to keep the test short, and since nearer to the lock even such yarns stretch.
+    """
     yarn = Fibre(modulus=6.5e6, undulation=0.0)
     cloth, furthest = Cloth(yarn, yarn, Resin(relaxation=ELASTIC)), rows[-1][0]
     frames = 10 * round(furthest / rows[0][0])  # forces are means over a frame: short ones

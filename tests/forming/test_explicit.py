@@ -182,8 +182,11 @@ def test_a_net_shaken_hard_keeps_its_energy(safety: float, error: float) -> None
     assert np.abs(momentum).max() < 1e-15
 
 
-@pytest.mark.parametrize(("safety", "error"), [(0.15, 6e-4), (0.3, 1.8e-3), (0.5, 2.1e-3), (0.9, 1.3e-2)])
+@pytest.mark.parametrize(
+    ("safety", "error"), [(0.075, 1.9e-4), (0.15, 6e-4), (0.3, 1.8e-3), (0.5, 2.1e-3), (0.9, 1.3e-2)]
+)
 def test_a_net_of_undulated_yarns_that_go_slack_keeps_its_energy(safety: float, error: float) -> None:
+    """1.9e-4 asks for half the step of 0.15 with these velocities: stiffness jumps where a yarn is pulled straight."""
     yarns = Fibre(undulation=0.005, compression=0.0)
     early, late, momentum = _shaken(Cloth(yarns, yarns, Resin(relaxation=ELASTIC)), safety)
     assert max(early, late) < error

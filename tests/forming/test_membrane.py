@@ -114,7 +114,7 @@ def test_a_patch_of_distorted_triangles_carries_one_stress_and_balances(strain: 
     state.x[:] = (model.sheet.fabric @ gradient.T + [5.0, -3.0, 11.0]).ravel()
     add_forces(model, state)
     stress = _elastic_stress(model, state)
-    assert np.ptp(stress, axis=0) == pytest.approx(0.0, abs=1e-11)
+    assert np.ptp(stress, axis=0).max() < 1e-12 * np.abs(stress).max()
     scale = np.abs(state.f).max()
     assert np.abs(state.f.reshape(-1, 3)[inner]).max() < 1e-12 * scale
 
@@ -144,7 +144,7 @@ def test_a_rotation_leaves_the_relaxing_stresses_as_they_are() -> None:
             add_forces(model, state)
     assert turned.history == pytest.approx(still.history, abs=1e-12 * np.abs(still.history).max())
     assert turned.f.reshape(-1, 3) == pytest.approx(
-        still.f.reshape(-1, 3) @ turn.T, abs=1e-11 * np.abs(still.f).max()
+        still.f.reshape(-1, 3) @ turn.T, abs=1e-12 * np.abs(still.f).max()
     )
 
 
