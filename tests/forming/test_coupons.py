@@ -28,6 +28,7 @@ def test_the_picture_frame_has_the_force_of_the_closed_form(shear: float, force:
         200.0 * (np.cos(np.pi / 4 - g / 2) - np.cos(np.pi / 4)), rel=1e-12
     )
     assert result.shear[-1] == pytest.approx(shear, abs=1e-9)
+    assert result.balance_error < 1e-6
 
 
 def test_constant_thickness_takes_the_cosine_from_the_force_of_the_frame() -> None:
@@ -105,6 +106,7 @@ def test_off_axis_forces_are_those_of_the_inextensible_net(angle: float, cells: 
     result = uniaxial(cloth, angle, 20.0, furthest, cells=cells, frames=frames).result
     for displacement, force in rows:
         assert _shown(result, displacement)[0] == pytest.approx(force, rel=0.015)
+    assert result.balance_error < 1e-3
 
 
 @pytest.mark.slow
