@@ -14,7 +14,9 @@ QUICK = ("--cells", 4, "--steps", 800, "--frames", 8, "--outputs", "none")
 
 
 def test_the_frame_gives_a_reading_at_each_shear_that_was_asked_for(run: Callable[..., Result]) -> None:
-    result = run("coupon", "picture-frame", "--side", 100, "--thickness", 2, "--shear", "10,30,45", "--elastic", "--json")
+    result = run(
+        "coupon", "picture-frame", "--side", 100, "--thickness", 2, "--shear", "10,30,45", "--elastic", "--json"
+    )
     document = json.loads(result.stdout)
     assert result.exit_code == 0
     assert document["schema"] == "geomdrap.coupon/1"
@@ -130,6 +132,57 @@ def test_choices_on_the_command_line_are_those_of_the_library() -> None:
     assert set(coupon_fit.SETTINGS) == set(fit_coupon.TESTS)
 
 
+def _shear_table(path: Path, text: str) -> None:
+    path.write_text("series,displacement,force,shear\n" + text, encoding="utf-8")
+
+
+@pytest.fixture
+def no_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No fit may begin."""
+
+    def never(*_: object) -> None:
+        raise AssertionError("the fit has begun")
+
+    monkeypatch.setattr("geomdrap.forming.fit_coupon.fit_coupon", never)
+
+
+@pytest.mark.usefixtures("no_fit")
+@pytest.mark.parametrize("split", [0, 2, 50])
+def test_a_split_that_leaves_too_few_points_is_refused_before_the_fit(
+    error_of: Callable[..., str], tmp_path: Path, split: float
+) -> None:
+    _shear_table(tmp_path / "t.csv", "".join(f"a,{d},{9 * d},{0.9 * d}\n" for d in range(1, 13)))
+    said = error_of("coupon", "fit", "bias-extension", "t.csv", "--split", split)
+    assert f"the split at {split} mm leaves {min(split, 12)} of 12 points of the series 'a'" in said
+
+
+@pytest.mark.usefixtures("no_fit")
+@pytest.mark.parametrize(
+    ("test", "rows"),
+    [("uniaxial", "a,1,9,1\na,2,18,2\n"), ("bias-extension", "a,1,9,\n"), ("bias-extension", "a,1,9,1\nb,1,9,\n")],
+)
+def test_a_split_of_no_use_is_refused(error_of: Callable[..., str], tmp_path: Path, test: str, rows: str) -> None:
+    _shear_table(tmp_path / "t.csv", rows)
+    assert "a bias-extension test whose every series has shear" in error_of(
+        "coupon", "fit", test, "t.csv", "--split", 1
+    )
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ("".join(f"a,{d},,{d}\nb,{d},{9 * d},\n" for d in range(1, 9)), "no verdict: the series b has no shear"),
+        ("a,1,,1\na,2,,2\n", "no verdict: the split at 1.4 mm leaves 1 of 2 points of the series 'a'"),
+    ],
+)
+def test_a_fit_without_a_verdict_says_why(run: Callable[..., Result], tmp_path: Path, rows: str, said: str) -> None:
+    _shear_table(tmp_path / "t.csv", rows)
+    options = ("--cells", 2, "--steps", 800, "--fit", "fibre-modulus", "--elastic", "--outputs", "none")
+    result = run("coupon", "fit", "bias-extension", "t.csv", *options, "--json")
+    assert said in result.stderr
+    assert "lacks" not in json.loads(result.stdout)
+
+
 def _frame_twin(path: Path) -> None:
     from geomdrap.forming import Cloth, Resin
     from geomdrap.forming.fit_coupon import predict
@@ -172,9 +225,15 @@ def test_fit_tells_the_story_of_a_real_curve_and_its_doubt(run: Callable[..., Re
     [
         (("picture-frame", "none.csv"), "none.csv does not exist"),
         (("picture-frame", "frame.csv", "--angle", 30), "--angle is not a setting of a picture-frame test"),
-        (("picture-frame", "frame.csv", "--warp-modulus", 30), "--warp-modulus is not a start of a picture-frame fit"),
+        (
+            ("picture-frame", "frame.csv", "--warp-modulus", 30),
+            "--warp-modulus is not a start of a picture-frame fit",
+        ),
         (("biaxial", "frame.csv"), "fitted by force_warp or force_weft"),
-        (("picture-frame", "frame.csv", "--fit", "undulation"), "does not show undulation; choose from resin-modulus"),
+        (
+            ("picture-frame", "frame.csv", "--fit", "undulation"),
+            "does not show undulation; choose from resin-modulus",
+        ),
     ],
 )
 def test_a_fit_that_cannot_be_is_refused(
