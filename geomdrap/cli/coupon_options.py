@@ -75,7 +75,7 @@ def run_options(function: F) -> F:
         click.option(
             "--steps", type=click.IntRange(min=1), help="Time steps.  [default: as many as a slow test needs]"
         ),
-        click.option("--cells", type=click.IntRange(min=1), default=20, show_default=True, help="Cells across."),
+        click.option("--cells", type=click.IntRange(min=2), default=20, show_default=True, help="Cells across."),
     ):
         function = option(function)
     return function
@@ -106,6 +106,10 @@ def cloth_of(base: Cloth, asked: dict[str, Any]) -> Cloth:
 
     relaxation, prony = asked.pop("relaxation"), asked.pop("prony")
     if asked.pop("elastic"):
+        if relaxation not in (None, "elastic"):
+            raise click.UsageError(
+                f"--elastic and --relaxation {relaxation} contradict each other: leave one of them out"
+            )
         relaxation = "elastic"
     resin = _changed(
         base.resin,

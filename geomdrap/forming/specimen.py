@@ -59,6 +59,11 @@ class Pulled:
     stopped: str
 
     @property
+    def steps(self) -> int:
+        """The time steps up to the last reading."""
+        return round(self.run.frames[-1].time / self.run.model.step)
+
+    @property
     def balance_error(self) -> float:
         """The largest share of energy that was unaccounted for."""
         return self.run.balance_error
@@ -97,9 +102,7 @@ def pull(
     half = max(1, round(0.5 * steps / frames))
     duration = displacement / pace
     step = duration / (2 * half * frames)
-    model = make_model(
-        specimen.sheet, specimen.cloth, step, specimen.held, damping / duration, scale_mass, safety
-    )
+    model = make_model(specimen.sheet, specimen.cloth, step, specimen.held, damping / duration, scale_mass, safety)
     rest, way = model.sheet.points[model.driven], specimen.flow[model.driven]
 
     def path(time: float) -> Array:

@@ -27,6 +27,17 @@ def test_the_frame_gives_a_reading_at_each_shear_that_was_asked_for(run: Callabl
     assert {Path(f).name for f in document["files"].values()} == {"coupon.json", "coupon.csv", "coupon.png"}
 
 
+def test_the_settings_are_those_of_the_run_that_was_made(run: Callable[..., Result]) -> None:
+    options = ("--cells", 4, "--steps", 810, "--frames", 8, "--displacement", 5, "--outputs", "none", "--json")
+    for test in ("uniaxial", "bias-extension", "biaxial"):
+        document = json.loads(run("coupon", test, *options).stdout)
+        settings = document["settings"]
+        taken = settings["displacement"] / (settings["speed"] / 60.0) / document["step"]["taken"]
+        assert settings["steps"] == pytest.approx(taken, rel=1e-7)
+        assert settings["steps"] != 810  # frames need a whole and even number each
+        assert (settings["cells"], settings["frames"], settings["keep_mass"]) == (4, 8, False)
+
+
 def test_the_files_hold_what_was_printed(run: Callable[..., Result], tmp_path: Path) -> None:
     result = run("coupon", "picture-frame", "--shear", "10,20", "-o", "frame", "--json")
     printed = json.loads(result.stdout)
@@ -97,7 +108,8 @@ def test_a_test_that_diverges_keeps_what_it_had_and_ends_with_1(
         (("--prony", "10"), "pairs of numbers"),
         (("--speed", "0"), "displacement and speed must be above 0; got 30 mm and 0 mm/min"),
         (("--steps", "10"), "10 steps are too few for 50 frames; take at least 200"),
-        (("--cells", "1"), "at least 2 cells across"),
+        (("--cells", "1"), "1 is not in the range x>=2"),
+        (("--relaxation", "creep", "--elastic"), "--elastic and --relaxation creep contradict each other"),
         (("--keep-mass",), "over the stable limit of "),
         (("--thickness", "0"), "the thickness of the cloth must be above 0 mm"),
         (("--displacement", "nan"), "not a finite number"),

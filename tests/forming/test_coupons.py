@@ -233,6 +233,10 @@ def test_a_step_over_the_limit_diverges_and_what_came_before_is_kept() -> None:
         (lambda: picture_frame(Cloth(), shear=[30.0, 10.0]), "must ascend"),
         (lambda: picture_frame(Cloth(), shear=[95.0]), "below 90 degrees"),
         (lambda: picture_frame(Cloth(), side=0.0), "a side and a speed above 0"),
+        (
+            lambda: picture_frame(Cloth(), shear=[1.0, 2.0, 3.0], steps=2),
+            "2 steps are too few for 3 readings; take at",
+        ),
         (lambda: biaxial_specimen(Cloth(), grip=300.0), "grips no wider"),
         (lambda: rectangle(0, 3, 1.0), "a cell or more"),
         (lambda: Fibre(modulus=-1.0), "fibre modulus must be 0 MPa or more; got -1"),
