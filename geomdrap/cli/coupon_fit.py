@@ -90,7 +90,8 @@ def fit(
     from geomdrap.cli.progress import Progress, announce_compilation
     from geomdrap.export.coupon_fit_outputs import as_dict, write_fit
     from geomdrap.export.whole import check_writable
-    from geomdrap.forming.fit_coupon import fit_coupon, usual_cloth
+    from geomdrap.forming.coupon import usual_cloth
+    from geomdrap.forming.fit_coupon import fit_coupon
     from geomdrap.forming.readings import read_test
 
     if outputs:

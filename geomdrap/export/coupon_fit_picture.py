@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from geomdrap.export import palette
 from geomdrap.export.compare_picture import save
-from geomdrap.export.coupon_picture import COLOURS
+from geomdrap.export.coupon_picture import COLOURS, bare
 
 if TYPE_CHECKING:
     from geomdrap.criticism.curve_verdict import CurveVerdict
@@ -62,7 +62,7 @@ def _curves(axes: Any, kind: str, fits: Mapping[str, CouponFit]) -> None:
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
     axes.legend(frameon=False, fontsize=8.5)
-    _bare(axes)
+    bare(axes)
 
 
 def _parameters(axes: Any, fits: Mapping[str, CouponFit]) -> None:
@@ -87,7 +87,7 @@ def _parameters(axes: Any, fits: Mapping[str, CouponFit]) -> None:
     )
     axes.margins(x=0.3)
     axes.invert_yaxis()
-    _bare(axes)
+    bare(axes)
 
 
 def _errors(axes: Any, verdict: CurveVerdict) -> None:
@@ -109,9 +109,4 @@ def _errors(axes: Any, verdict: CurveVerdict) -> None:
     axes.set_xlim(left=0.0)
     axes.invert_yaxis()
     axes.legend(frameon=False, fontsize=8)
-    _bare(axes)
-
-
-def _bare(axes: Any) -> None:
-    for name, side in axes.spines.items():
-        side.set_visible(name in ("left", "bottom"))
+    bare(axes)

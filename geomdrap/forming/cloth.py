@@ -6,7 +6,8 @@ A. Cherouat, H. Borouchaki, Materials 2 (2009) 1835, Eq. 4 to 6 and Table 1. Uni
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar
 
 from geomdrap.errors import FormingError
 from geomdrap.forming.relaxation import RELAXATIONS, Relaxation
@@ -104,6 +105,14 @@ class Cloth:
     def families(self) -> tuple[Fibre, Fibre]:
         """Warp and weft."""
         return self.warp, self.weft
+
+
+Record = TypeVar("Record", Fibre, Resin, Cloth)
+
+
+def changed(record: Record, **values: Any) -> Record:
+    """A cloth, or a part of one, with those of ``values`` that are not None; FormingError where one cannot be."""
+    return replace(record, **{name: value for name, value in values.items() if value is not None})
 
 
 def _at_least_zero(name: str, value: float, unit: str) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from geomdrap.forming.biaxial import JERSEY, biaxial_specimen
-from geomdrap.forming.cloth import Cloth
+from geomdrap.forming.cloth import Cloth, Fibre
 from geomdrap.forming.picture_frame import shear_frame
 from geomdrap.forming.specimen import Pulled, Specimen, pull
 from geomdrap.forming.uniaxial import kinematic_lock, strip_specimen
@@ -32,6 +32,14 @@ class Coupon:
     test: str
     settings: dict[str, Any]
     result: Pulled
+
+
+def usual_cloth(test: str) -> Cloth:
+    """The cloth of ``test`` unless told otherwise: a knit for ``biaxial``, straight yarns for ``bias-extension``."""
+    if test == "biaxial":
+        return JERSEY
+    straight = Fibre(undulation=0.0)
+    return Cloth(straight, straight) if test == "bias-extension" else Cloth()
 
 
 def uniaxial(

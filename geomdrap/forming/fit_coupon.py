@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.errors import FormingError
-from geomdrap.forming.biaxial import JERSEY
-from geomdrap.forming.cloth import Cloth, Fibre
+from geomdrap.forming.cloth import Cloth, changed
 from geomdrap.forming.coupon import Coupon, bias_extension, biaxial, picture_frame, uniaxial
 from geomdrap.forming.identify import Curves, Identified, identify, slopes_of, with_more
 
@@ -64,14 +63,6 @@ class CouponFit:
     fitted: dict[str, Array]
     identified: Identified
     advice: tuple[Advice, ...]
-
-
-def usual_cloth(test: str) -> Cloth:
-    """The cloth at which a fit of ``test`` starts."""
-    if test == "biaxial":
-        return JERSEY
-    straight = Fibre(undulation=0.0)
-    return Cloth(straight, straight) if test == "bias-extension" else Cloth()
 
 
 def fit_coupon(
@@ -147,17 +138,12 @@ def _start(cloth: Cloth, name: str) -> float:
 def with_values(cloth: Cloth, values: Mapping[str, float]) -> Cloth:
     """``cloth`` with parameters by name."""
     both = {"undulation": values.get("undulation"), "modulus": values.get("fibre-modulus")}
-    yarns = {side: _changed(getattr(cloth, side), **{**both, **_own(values, side)}) for side in ("warp", "weft")}
-    changed: Cloth = replace(cloth, resin=_changed(cloth.resin, modulus=values.get("resin-modulus")), **yarns)
-    return changed
+    yarns = {side: changed(getattr(cloth, side), **{**both, **_own(values, side)}) for side in ("warp", "weft")}
+    return changed(cloth, resin=changed(cloth.resin, modulus=values.get("resin-modulus")), **yarns)
 
 
 def _own(values: Mapping[str, float], side: str) -> dict[str, float]:
     return {"modulus": values[f"{side}-modulus"]} if f"{side}-modulus" in values else {}
-
-
-def _changed(record: Any, **values: float | None) -> Any:
-    return replace(record, **{name: value for name, value in values.items() if value is not None})
 
 
 def predict(

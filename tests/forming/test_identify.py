@@ -10,7 +10,8 @@ import pytest
 from geomdrap.errors import FormingError
 from geomdrap.forming import ELASTIC, Cloth, Fibre, Resin
 from geomdrap.forming.biaxial import JERSEY
-from geomdrap.forming.fit_coupon import fit_coupon, predict, usual_cloth, with_values
+from geomdrap.forming.coupon import usual_cloth
+from geomdrap.forming.fit_coupon import fit_coupon, predict, with_values
 from geomdrap.forming.identify import identify, slopes_of, spread_of, with_more
 from geomdrap.forming.readings import read_test
 
