@@ -102,7 +102,10 @@ def fit(
     announce_compilation(quiet, "forming")
     with Progress(quiet) as progress:
         progress.step("Fitting")
-        fits = {name: fit_coupon(test, columns, cloth, settings, names) for name, columns in readings.items()}
+        fits = {
+            name: fit_coupon(test, columns, cloth, settings, names, lambda runs: progress.tell(f"{runs} runs"))
+            for name, columns in readings.items()
+        }
         progress.step("Asking what is missing")
         verdict = _lacks(curves, cloth, settings, split, progress.share) if curves else None
         progress.step("Writing")

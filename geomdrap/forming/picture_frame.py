@@ -56,7 +56,7 @@ def shear_frame(
     force = [float(np.sum(f.reaction * _leverage(side, a))) for f, a in zip(frames, (0.0, *angles), strict=True)]
     seen = np.array([middle_shear(specimen.sheet, f.points) for f in frames])
     run = Run(model, tuple(frames), state, "")
-    return Pulled(specimen, run, np.array([0.0, *stops]), {"force": np.array(force)}, seen, 0.0, "")
+    return Pulled(specimen, run, np.array([0.0, *stops]), {"force": np.array(force)}, seen, 0.0)
 
 
 def _checked(shear: Sequence[float], side: float, speed: float, steps: int) -> list[float]:

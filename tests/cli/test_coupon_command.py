@@ -195,6 +195,16 @@ def test_a_fit_without_a_verdict_says_why(run: Callable[..., Result], tmp_path: 
     assert "lacks" not in json.loads(result.stdout)
 
 
+def test_fitting_tells_how_many_runs_it_has_made(
+    run: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+    monkeypatch.setattr("geomdrap.cli.progress.Progress.tell", lambda _, words: told.append(words))
+    _frame_twin(tmp_path / "frame.csv")
+    result = run("coupon", "fit", "picture-frame", "frame.csv", "--json", "--outputs", "none")
+    assert told == [f"{n} runs" for n in range(1, json.loads(result.stdout)["runs"] + 1)]
+
+
 def _frame_twin(path: Path) -> None:
     from geomdrap.forming import Cloth, Resin
     from geomdrap.forming.fit_coupon import predict
