@@ -31,8 +31,14 @@ KNOWN = 0.05
 """Relative standard deviation up to which a parameter is known, whatever it is correlated with."""
 BLIND = 1e-12
 """Share of the information, from which on down there is none but rounding."""
-FLOOR = 0.05
-"""Share of the largest reading below which the error of a reading no longer falls with it."""
+FLOOR = 0.01
+"""Share of the largest force below which the error of a force no longer falls with it.
+
+With a twentieth most readings of a 45° strip, whose forces span two decades, would count for little, and the scatter
+of the others would be underrated.
+"""
+CAMERA = 0.05
+"""Share of the largest shear that every reading of shear counts as, since its error does not depend on it."""
 LOOSE = 0.5
 """Relative standard deviation from which a parameter is not known."""
 
@@ -191,7 +197,7 @@ def _check_complete(curves: Curves, used: Mapping[str, NDArray[np.bool_]]) -> No
 
 
 def scales(readings: Curves) -> dict[str, Array]:
-    """The size of each reading by column: a twentieth of the largest there; for a force its own, if that is more.
+    """The size of each reading by column: a force's own, or `FLOOR` of the largest if more; for shear `CAMERA` of it.
 
     Load cells err in proportion to what they read; cameras do not.
     FormingError where a column holds nothing but zeros.
@@ -201,7 +207,9 @@ def scales(readings: Curves) -> dict[str, Array]:
     if empty:
         raise FormingError(f"the column {empty[0]} holds no reading other than 0; leave it out")
     return {
-        c: np.maximum(np.abs(values) if c.startswith("force") else 0.0, np.full(len(values), FLOOR * largest[c]))
+        c: np.maximum(np.abs(values), FLOOR * largest[c])
+        if c.startswith("force")
+        else np.full(len(values), CAMERA * largest[c])
         for c, values in readings.items()
     }
 
