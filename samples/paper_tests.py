@@ -43,7 +43,7 @@ def slopes(curve, places):
 
 
 def compute():
-    """All curves: by angle, by speed for two readings of Table 1, by undulation, and the biaxial tests."""
+    """All curves: by angle, by speed with straight yarns for two readings of Table 1, and the biaxial tests."""
     angles = {angle: pulled(angle) for angle in ANGLES}
     speeds = {
         name: {speed: pulled(speed=speed, undulation=0.0, relaxation=name) for speed in (20.0, 40.0, 80.0)}

@@ -50,3 +50,8 @@ def test_help_of_the_program_imports_no_command() -> None:
         "print('imported', [n for n in COMMANDS if f'geomdrap.cli.{n}' in sys.modules])"
     )
     assert _run(code).strip().endswith("imported []")
+
+
+def test_the_modules_that_the_readme_names_are_there_without_another_import() -> None:
+    code = "import geomdrap as gd; print(callable(gd.forming.coupon.uniaxial), callable(gd.forming.fit_coupon.fit_coupon))"
+    assert _run(code).strip() == "True True"

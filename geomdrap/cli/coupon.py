@@ -62,16 +62,16 @@ def uniaxial(angle: Sequence[float], speed: Sequence[float], undulation: Sequenc
       geomdrap coupon uniaxial --speed 20,40,80 --json
       geomdrap coupon uniaxial --undulation 0,0.005
     """
-    from geomdrap.forming import Cloth
     from geomdrap.forming import coupon as coupons
+    from geomdrap.forming.fit_coupon import with_values
 
     show = _shown(asked)
+    cloth = cloth_of(coupons.usual_cloth("uniaxial"), asked)
     cases = [
-        (coupons.uniaxial, cloth_of(Cloth(), {**asked, "undulation": u}), {"angle": a, "speed": s})
+        (coupons.uniaxial, (with_values(cloth, {"undulation": u}),), {**asked, "angle": a, "speed": s})
         for a, s, u in product(angle, speed, undulation)
     ]
-    cloth_of(Cloth(), asked)  # takes the options of the cloth out
-    return _test([(make, (cloth,), {**asked, **more}) for make, cloth, more in cases], **show)
+    return _test(cases, **show)
 
 
 @coupon.command("bias-extension")
@@ -91,12 +91,10 @@ def bias_extension(**asked: Any) -> int:
       geomdrap coupon bias-extension --length 150 --width 30 --displacement 30 --elastic
       geomdrap coupon bias-extension --fibre-modulus 40000 --resin-modulus 10 --json
     """
-    from geomdrap.forming import Cloth, Fibre
     from geomdrap.forming import coupon as coupons
 
     show = _shown(asked)
-    straight = Fibre(undulation=0.0)
-    cloth = cloth_of(Cloth(straight, straight), asked)
+    cloth = cloth_of(coupons.usual_cloth("bias-extension"), asked)
     return _test([(coupons.bias_extension, (cloth,), asked)], **show)
 
 
@@ -118,11 +116,10 @@ def picture_frame(**asked: Any) -> int:
       geomdrap coupon picture-frame --side 100 --thickness 2 --shear 10,30,45 --elastic
       geomdrap coupon picture-frame --speed 80 --json
     """
-    from geomdrap.forming import Cloth
     from geomdrap.forming import coupon as coupons
 
     show = _shown(asked)
-    cloth = cloth_of(Cloth(), asked)
+    cloth = cloth_of(coupons.usual_cloth("picture-frame"), asked)
     return _test([(coupons.picture_frame, (cloth,), asked)], **show)
 
 
@@ -149,10 +146,9 @@ def biaxial(**asked: Any) -> int:
       geomdrap coupon biaxial --ratio 0.5 --warp-modulus 40 --json
     """
     from geomdrap.forming import coupon as coupons
-    from geomdrap.forming.biaxial import JERSEY
 
     show = _shown(asked)
-    cloth = cloth_of(JERSEY, asked)
+    cloth = cloth_of(coupons.usual_cloth("biaxial"), asked)
     return _test([(coupons.biaxial, (cloth,), asked)], **show)
 
 

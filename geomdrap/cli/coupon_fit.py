@@ -13,6 +13,7 @@ from geomdrap.cli.options import folder_option, json_option, quiet_option
 from geomdrap.cli.values import Names, Number
 
 if TYPE_CHECKING:
+    from geomdrap.criticism.curve import Curve
     from geomdrap.criticism.curve_verdict import CurveVerdict
     from geomdrap.forming import Cloth
     from geomdrap.forming.fit_coupon import CouponFit
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 TESTS = ("uniaxial", "bias-extension", "picture-frame", "biaxial")  # as in geomdrap.forming; tests compare
 FITTED = ("fibre-modulus", "warp-modulus", "weft-modulus", "undulation", "resin-modulus")
 FIT_OUTPUTS = ("json", "png")
+LENGTH, WIDTH = 150.0, 30.0  # mm, of a strip unless told otherwise
 SETTINGS = {
     "uniaxial": ("angle", "speed", "length", "width", "steps", "cells"),
     "bias-extension": ("speed", "length", "width", "steps", "cells"),
@@ -88,22 +90,27 @@ def fit(
     from geomdrap.cli.progress import Progress, announce_compilation
     from geomdrap.export.coupon_fit_outputs import as_dict, write_fit
     from geomdrap.export.whole import check_writable
-    from geomdrap.forming.fit_coupon import fit_coupon, usual_cloth
+    from geomdrap.forming.coupon import usual_cloth
+    from geomdrap.forming.fit_coupon import fit_coupon
     from geomdrap.forming.readings import read_test
 
     if outputs:
         check_writable(folder)
     readings, settings = read_test(measured), _settings(test, asked)
     cloth = cloth_of(usual_cloth(test), asked)
+    curves, split, silent = _to_judge(test, readings, settings, split)
     announce_compilation(quiet, "forming")
     with Progress(quiet) as progress:
         progress.step("Fitting")
-        fits = {name: fit_coupon(test, columns, cloth, settings, names) for name, columns in readings.items()}
+        fits = {
+            name: fit_coupon(test, columns, cloth, settings, names, lambda runs: progress.tell(f"{runs} runs"))
+            for name, columns in readings.items()
+        }
         progress.step("Asking what is missing")
-        verdict = _lacks(test, readings, fits, cloth, settings, split, progress.share)
+        verdict = _lacks(curves, cloth, settings, split, progress.share) if curves else None
         progress.step("Writing")
         files = write_fit(fits, verdict, folder, outputs)
-    say([w for name, found in fits.items() for w in _warnings(name, found)], (), quiet)
+    say([*(w for name, found in fits.items() for w in _warnings(name, found)), *silent], (), quiet)
     if as_json:
         print_json(as_dict(fits, verdict, files))
     elif not quiet:
@@ -125,34 +132,54 @@ def _settings(test: str, asked: dict[str, Any]) -> dict[str, Any]:
     return given
 
 
-def _lacks(
-    test: str,
-    readings: Mapping[str, Mapping[str, Any]],
-    fits: Mapping[str, CouponFit],
-    cloth: Cloth,
-    settings: dict[str, Any],
-    split: float | None,
-    progress: Any,
-) -> CurveVerdict | None:
-    """What the model at the given cloth lacks, by the shear of a bias-extension test; None without."""
-    if test != "bias-extension" or not all("shear" in found.measured for found in fits.values()):
-        return None
+def _to_judge(
+    test: str, readings: Mapping[str, Mapping[str, Any]], settings: dict[str, Any], split: float | None
+) -> tuple[dict[str, Curve], float, list[str]]:
+    """Curves of shear by series, where they are split, mm, and why there is no verdict; no curves without one.
+
+    What cannot be judged is refused here, before the fit, if a split was asked for.
+    """
     import numpy as np
 
-    from geomdrap.criticism.curve import Curve
+    from geomdrap.criticism.curve import EFFECTS, Curve
+    from geomdrap.criticism.curve_fit import check_split
+    from geomdrap.errors import MeasurementError
+
+    seen = {n: np.isfinite(c["shear"]) if "shear" in c else np.zeros(0, dtype=bool) for n, c in readings.items()}
+    blind = [name for name, finite in seen.items() if not finite.any()]
+    if test != "bias-extension" or blind:
+        if split is not None:
+            raise click.UsageError("--split is for a bias-extension test whose every series has shear; leave it out")
+        some = test == "bias-extension" and len(blind) < len(seen)
+        return {}, 0.0, [f"no verdict: the series {blind[0]} has no shear"] if some else []
+    free = settings.get("length", LENGTH) - settings.get("width", WIDTH)
+    curves = {
+        name: Curve(name, columns["displacement"][seen[name]], columns["shear"][seen[name]], free)
+        for name, columns in readings.items()
+    }
+    where = 0.7 * max(float(c.displacement.max()) for c in curves.values()) if split is None else split
+    try:
+        for curve in curves.values():
+            for effect in EFFECTS.values():
+                check_split(effect, curve, where)
+    except MeasurementError as error:
+        if split is not None:
+            raise
+        return {}, where, [f"no verdict: {error}"]
+    return curves, where, []
+
+
+def _lacks(
+    curves: Mapping[str, Curve], cloth: Cloth, settings: dict[str, Any], split: float, progress: Any
+) -> CurveVerdict:
+    """What the model at the given cloth lacks, by the shear of a bias-extension test."""
     from geomdrap.criticism.curve_mechanical import mechanical_effects
     from geomdrap.criticism.curve_verdict import judge_curves
 
-    size = {"length": settings.get("length", 150.0), "width": settings.get("width", 30.0)}
-    curves = {}
-    for name, columns in readings.items():
-        seen = np.isfinite(columns["shear"])
-        free = size["length"] - size["width"]
-        curves[name] = Curve(name, columns["displacement"][seen], columns["shear"][seen], free)
+    asked = {"length": LENGTH, "width": WIDTH, **settings}
     furthest = max(float(c.displacement.max()) for c in curves.values())
-    more = {key: value for key, value in settings.items() if key not in size}
-    effects = mechanical_effects(cloth, **size, furthest=furthest, progress=progress, **more)
-    return judge_curves(curves, split or 0.7 * furthest, effects)
+    effects = mechanical_effects(cloth, furthest=furthest, progress=progress, **asked)
+    return judge_curves(curves, split, effects)
 
 
 def _warnings(series: str, found: CouponFit) -> list[str]:

@@ -75,7 +75,7 @@ def run_options(function: F) -> F:
         click.option(
             "--steps", type=click.IntRange(min=1), help="Time steps.  [default: as many as a slow test needs]"
         ),
-        click.option("--cells", type=click.IntRange(min=1), default=20, show_default=True, help="Cells across."),
+        click.option("--cells", type=click.IntRange(min=2), default=20, show_default=True, help="Cells across."),
     ):
         function = option(function)
     return function
@@ -103,11 +103,16 @@ def result_options(function: F) -> F:
 def cloth_of(base: Cloth, asked: dict[str, Any]) -> Cloth:
     """The cloth ``base`` with what was ``asked`` for; the options are taken out of ``asked``."""
     from geomdrap.forming import RELAXATIONS, Relaxation
+    from geomdrap.forming.cloth import changed
 
     relaxation, prony = asked.pop("relaxation"), asked.pop("prony")
     if asked.pop("elastic"):
+        if relaxation not in (None, "elastic"):
+            raise click.UsageError(
+                f"--elastic and --relaxation {relaxation} contradict each other: leave one of them out"
+            )
         relaxation = "elastic"
-    resin = _changed(
+    resin = changed(
         base.resin,
         modulus=asked.pop("resin_modulus"),
         poisson=asked.pop("poisson"),
@@ -123,15 +128,9 @@ def cloth_of(base: Cloth, asked: dict[str, Any]) -> Cloth:
     moduli = {side: asked.pop(f"{side}_modulus", None) for side in ("warp", "weft")}
     both, undulation = asked.pop("fibre_modulus", None), asked.pop("undulation", None)
     yarns = {
-        side: _changed(
+        side: changed(
             getattr(base, side), modulus=moduli[side] if both is None else both, undulation=undulation, **common
         )
         for side in ("warp", "weft")
     }
-    changed: Cloth = _changed(base, resin=resin, thickness=asked.pop("thickness"), **yarns)
-    return changed
-
-
-def _changed(record: Any, **values: Any) -> Any:
-    """A frozen record with the values that are not None."""
-    return replace(record, **{name: value for name, value in values.items() if value is not None})
+    return changed(base, resin=resin, thickness=asked.pop("thickness"), **yarns)

@@ -20,7 +20,8 @@ _WIDTH = 30
 class Progress:
     """Steps of a run, shown once they take over a second.
 
-    A step that tells its share is shown as ``Evaluating [#####.....] 50 %``, another one as ``Draping ... 3 s``.
+    A step that tells its share is shown as ``Evaluating [#####.....] 50 %``, one that tells words as
+    ``Fitting ... 12 runs``, another one as ``Draping ... 3 s``.
     """
 
     def __init__(self, quiet: bool = False):
@@ -52,16 +53,25 @@ class Progress:
 
     def share(self, done: float, words: str = "") -> None:
         """Take the share of the step that is done, 0 to 1, and words on it. Cheap enough to be called often."""
-        if not self.enabled:
+        if not self._is_due():
             return
-        now = time.monotonic()
-        if now - self._start < PATIENCE or now - self._drawn_at < _REDRAW:
-            return
-        self._drawn_at = now
-        self._stop_counting()
         filled = round(_WIDTH * min(max(done, 0.0), 1.0))
         bar = "#" * filled + "." * (_WIDTH - filled)
         self._draw(f"{self._name} [{bar}] {100 * done:3.0f} %{words and ', '}{words}")
+
+    def tell(self, words: str) -> None:
+        """Take words on how far a step is whose end is not known. Cheap enough to be called often."""
+        if self._is_due():
+            self._draw(f"{self._name} ... {words}")
+
+    def _is_due(self) -> bool:
+        """Whether it is time to draw again; then the seconds are no longer counted."""
+        now = time.monotonic()
+        if not self.enabled or now - self._start < PATIENCE or now - self._drawn_at < _REDRAW:
+            return False
+        self._drawn_at = now
+        self._stop_counting()
+        return True
 
     def _draw(self, text: str) -> None:
         self._drawn = True

@@ -1,4 +1,4 @@
-"""A measured curve of a bias-extension test, the pin-jointed theory of it, and what the theory may lack.
+"""A measured curve of a bias-extension test, the pin-jointed theory of it, and what a theory may lack.
 
 A strip of length L and width W, cut at 45° and pulled by δ, shears in its middle as a pin-jointed net with
 cos((90° − γ)/2) = (D + δ)/(√2 D), D = L − W, as long as its yarns neither stretch nor slip
@@ -69,9 +69,9 @@ def _row(path: str | Path, number: int, line: str) -> tuple[str, float, float]:
     return row
 
 
-def pin_jointed(displacement: Array, length: float, stretch: Array | float = 0.0) -> Array:
-    """Shear (n,) deg at ``displacement`` (n,) mm of a net whose yarns are longer by the strain ``stretch``."""
-    cosine = (length + displacement) / (np.sqrt(2.0) * length * (1.0 + np.asarray(stretch)))
+def pin_jointed(displacement: Array, length: float) -> Array:
+    """Shear (n,) deg at ``displacement`` (n,) mm of a net whose yarns keep their length, D = ``length`` mm."""
+    cosine = (length + displacement) / (np.sqrt(2.0) * length)
     shear: Array = 90.0 - 2.0 * np.rad2deg(np.arccos(np.clip(cosine, -1.0, 1.0)))
     return shear
 
@@ -89,7 +89,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class CurveEffect:
-    """What the pin-jointed theory may lack: a model of the curve and its parameters."""
+    """A theory of the curve, or a theory with what it may lack: a model of the curve and its parameters."""
 
     name: str
     summary: str

@@ -35,18 +35,24 @@ def fit_curve(effect: CurveEffect, curve: Curve, split: float) -> CurveFit:
 
     MeasurementError where the split leaves too few points on a side.
     """
+    check_split(effect, curve, split)
     first = curve.displacement <= split
-    if np.count_nonzero(first) <= len(effect.parameters) or np.all(first):
-        raise MeasurementError(
-            f"the split at {split:g} mm leaves {np.count_nonzero(first)} of {len(first)} points of the series "
-            f"'{curve.series}' to fit {effect.name}; choose another split"
-        )
     values, held = least_squares_fit(effect, curve), least_squares_fit(effect, curve.part(first))
     errors = residuals(effect, values, curve)
     rho, criterion = ar1_criterion(errors, len(values))
     rest = residuals(effect, held, curve.part(~first))
     plausible = in_range(effect, values) and in_range(effect, held)
     return CurveFit(effect, values, _rms(errors), held, _rms(rest), plausible, rho, criterion)
+
+
+def check_split(effect: CurveEffect, curve: Curve, split: float) -> None:
+    """MeasurementError where a split at ``split`` mm leaves too few points to fit ``effect``, or none to foretell."""
+    first = curve.displacement <= split
+    if np.count_nonzero(first) <= len(effect.parameters) or np.all(first):
+        raise MeasurementError(
+            f"the split at {split:g} mm leaves {np.count_nonzero(first)} of {len(first)} points of the series "
+            f"'{curve.series}' to fit {effect.name}; choose another split"
+        )
 
 
 def least_squares_fit(effect: CurveEffect, curve: Curve) -> Array:

@@ -39,12 +39,13 @@ def mechanical_effects(
     The first is the model itself. Displacements below 0 are taken on straight, since clamps may slack. ``settings``
     (``speed``, …) are those of `bias_extension`.
     """
-    total, done = len(LOGARITHMS) + len(UNDULATIONS), 0
+    from scipy.interpolate import CubicSpline
 
-    def curve(factor: float, undulation: float) -> Any:
-        nonlocal done
-        from scipy.interpolate import CubicSpline
+    own_undulation = cloth.warp.undulation
+    cases = [(10.0**power, own_undulation) for power in LOGARITHMS] + [(1.0, u) for u in UNDULATIONS]
+    curves: dict[tuple[float, float], Any] = {}
 
+    def run(factor: float, undulation: float) -> Any:
         changed = replace(
             cloth,
             warp=replace(cloth.warp, modulus=factor * cloth.warp.modulus, undulation=undulation),
@@ -53,14 +54,14 @@ def mechanical_effects(
         pulled = bias_extension(changed, furthest, length, width, cells=cells, **settings).result
         if pulled.stopped:
             raise FormingError(f"the model cannot stand for the curve: {pulled.stopped}")
-        done += 1
-        if progress:
-            progress(done / total)
         return CubicSpline(pulled.displacement, pulled.shear)
 
-    softer = [curve(10.0**power, cloth.warp.undulation) for power in LOGARITHMS]
-    undulated = [curve(1.0, u) for u in UNDULATIONS]
-    itself = softer[LOGARITHMS.index(0.0)]
+    for number, case in enumerate(dict.fromkeys(cases), 1):
+        curves[case] = run(*case)
+        if progress:
+            progress(number / len(set(cases)))
+    softer, undulated = ([curves[c] for c in part] for part in (cases[: len(LOGARITHMS)], cases[len(LOGARITHMS) :]))
+    itself = curves[1.0, own_undulation]
     theory = CurveEffect("mechanical", "nothing is missing", lambda d, p, _: _read(itself, d, furthest))
     own = (
         _family("softer yarns", "the yarns are softer than thought", SOFTER, LOGARITHMS, softer, furthest),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from geomdrap.export import palette
 from geomdrap.export.compare_picture import save
-from geomdrap.export.coupon_picture import COLOURS
+from geomdrap.export.coupon_picture import COLOURS, bare
 
 if TYPE_CHECKING:
     from geomdrap.criticism.curve_verdict import CurveVerdict
@@ -62,22 +62,21 @@ def _curves(axes: Any, kind: str, fits: Mapping[str, CouponFit]) -> None:
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
     axes.legend(frameon=False, fontsize=8.5)
-    _bare(axes)
+    bare(axes)
 
 
 def _parameters(axes: Any, fits: Mapping[str, CouponFit]) -> None:
     """Values over the first series' with their 95 % intervals."""
     from geomdrap.forming.fit_coupon import UNITS as PARAMETER_UNITS
 
-    first = next(iter(fits.values())).identified
+    first, apart = next(iter(fits.values())).identified, min(0.2, 0.8 / len(fits))
     for number, (series, fit) in enumerate(fits.items()):
         found = fit.identified
         for k, name in enumerate(found.names):
             low, high = found.interval[k] / first.values[k]
-            middle, y = found.values[k] / first.values[k], k + 0.2 * number
-            axes.errorbar(
-                middle, y, xerr=[[middle - low], [high - middle]], fmt="o", color=COLOURS[number], capsize=4
-            )
+            middle, y = found.values[k] / first.values[k], k + apart * number
+            colour = COLOURS[number % len(COLOURS)]
+            axes.errorbar(middle, y, xerr=[[middle - low], [high - middle]], fmt="o", color=colour, capsize=4)
             words = f"{name} {found.values[k]:.4g} ± {found.sigma[k]:.2g} {PARAMETER_UNITS[name]}".strip()
             axes.annotate(
                 words if len(fits) == 1 else f"{words} ({series})", (middle, y), (0, 8), textcoords="offset points",
@@ -88,7 +87,7 @@ def _parameters(axes: Any, fits: Mapping[str, CouponFit]) -> None:
     )
     axes.margins(x=0.3)
     axes.invert_yaxis()
-    _bare(axes)
+    bare(axes)
 
 
 def _errors(axes: Any, verdict: CurveVerdict) -> None:
@@ -98,10 +97,9 @@ def _errors(axes: Any, verdict: CurveVerdict) -> None:
     for number, (series, fits) in enumerate(verdict.fits.items()):
         at = [k + (2 * number - len(verdict.fits) + 0.5) * height for k in range(len(names))]
         held, whole = ([getattr(fits[name], key) for name in names] for key in ("held_rms", "rms"))
-        axes.barh(at, held, height, color=COLOURS[number], label=f"{series}: held out")
-        axes.barh(
-            [y + height for y in at], whole, height, color=COLOURS[number], alpha=0.4, label=f"{series}: all points"
-        )
+        colour = COLOURS[number % len(COLOURS)]
+        axes.barh(at, held, height, color=colour, label=f"{series}: held out")
+        axes.barh([y + height for y in at], whole, height, color=colour, alpha=0.4, label=f"{series}: all points")
         for y, name, error in zip(at, names, held, strict=True):
             mark = "" if fits[name].plausible else " (values not plausible)"
             best = "  best" if name == verdict.candidates[series] else ""
@@ -111,9 +109,4 @@ def _errors(axes: Any, verdict: CurveVerdict) -> None:
     axes.set_xlim(left=0.0)
     axes.invert_yaxis()
     axes.legend(frameon=False, fontsize=8)
-    _bare(axes)
-
-
-def _bare(axes: Any) -> None:
-    for name, side in axes.spines.items():
-        side.set_visible(name in ("left", "bottom"))
+    bare(axes)

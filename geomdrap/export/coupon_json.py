@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from geomdrap import __version__
-from geomdrap.export.report_json import as_text
+from geomdrap.export.report_json import as_text, plain
 from geomdrap.export.whole import write_whole
 
 if TYPE_CHECKING:
@@ -70,13 +67,5 @@ def _energy(pulled: Pulled) -> dict[str, float]:
 
 
 def significant(value: Any) -> Any:
-    """Numpy values as JSON's own, floats to nine significant digits, what is not a number as None."""
-    if isinstance(value, dict):
-        return {str(key): significant(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return [significant(item) for item in value]
-    if isinstance(value, (bool, np.bool_, str)) or value is None:
-        return bool(value) if isinstance(value, np.bool_) else value
-    if isinstance(value, (int, np.integer)):
-        return int(value)
-    return float(f"{value:.{DIGITS}g}") + 0.0 if math.isfinite(value) else None
+    """Numpy values as JSON's own, floats to nine significant digits: forces and strains differ by powers of ten."""
+    return plain(value, lambda number: float(f"{number:.{DIGITS}g}"))

@@ -72,13 +72,18 @@ def _curves(force: Any, shear: Any, coupons: Sequence[Coupon]) -> None:
     shear.set(xlabel="displacement [mm]", ylabel="shear in the middle [deg]")
     for axes in (force, shear):
         axes.set_xlim(left=0.0)
-        for name, side in axes.spines.items():
-            side.set_visible(name in ("left", "bottom"))
+        bare(axes)
     force.set_ylim(bottom=0.0, top=_top(coupons))
     if max(float(np.nanmax(np.abs(c.result.shear))) for c in coupons) < 1.0:
         shear.set_ylim(-1.0, 1.0)  # rounding must not look like shear
     if force.get_legend_handles_labels()[0]:
         force.legend(frameon=False, fontsize=8.5)
+
+
+def bare(axes: Any) -> None:
+    """Hide all sides of a plot but the left and the lower one."""
+    for name, side in axes.spines.items():
+        side.set_visible(name in ("left", "bottom"))
 
 
 def _top(coupons: Sequence[Coupon]) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -96,16 +96,20 @@ def _fields(record: object, *names: str) -> dict[str, Any]:
     return {name: getattr(record, name) for name in names}
 
 
-def plain(value: Any) -> Any:
-    """Turn numpy values into JSON's own, floats rounded, −0 and NaN gone."""
+def _to_decimals(value: float) -> float:
+    return round(value, DECIMALS)
+
+
+def plain(value: Any, rounded: Callable[[float], float] = _to_decimals) -> Any:
+    """Turn numpy values into JSON's own, floats ``rounded``, −0 gone, what is not a number None."""
     if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
+        return {str(key): plain(item, rounded) for key, item in value.items()}
     if isinstance(value, (list, tuple, np.ndarray)):
-        return [plain(item) for item in value]
+        return [plain(item, rounded) for item in value]
     if isinstance(value, (bool, np.bool_)):
         return bool(value)
     if isinstance(value, (int, np.integer)):
         return int(value)
     if isinstance(value, (float, np.floating)):
-        return round(float(value), DECIMALS) + 0.0 if math.isfinite(value) else None
+        return rounded(float(value)) + 0.0 if math.isfinite(value) else None
     return value

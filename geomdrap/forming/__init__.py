@@ -1,8 +1,11 @@
 """The mechanical model: yarns as trusses in a viscoelastic membrane, stepped explicitly.
 
 Units: mm, N, s, MPa, tonne. A `Sheet` (mesh) of a `Cloth` (laws) makes a `Model`, which is constant; a `State`
-changes.
+changes. Test specimens are in the modules ``coupon`` and ``fit_coupon``.
 """
+
+from importlib import import_module
+from types import ModuleType
 
 from geomdrap.forming.cloth import Cloth, Fibre, Resin
 from geomdrap.forming.contact import Tool
@@ -34,3 +37,12 @@ __all__ = [
     "start",
     "take_steps",
 ]
+
+_TESTS = ("coupon", "fit_coupon")
+
+
+def __getattr__(name: str) -> ModuleType:
+    """Load the modules of test specimens and of their fit when they are first used."""
+    if name not in _TESTS:
+        raise AttributeError(f"module 'geomdrap.forming' has no attribute {name!r}")
+    return import_module(f"geomdrap.forming.{name}")

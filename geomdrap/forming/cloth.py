@@ -6,7 +6,8 @@ A. Cherouat, H. Borouchaki, Materials 2 (2009) 1835, Eq. 4 to 6 and Table 1. Uni
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar
 
 from geomdrap.errors import FormingError
 from geomdrap.forming.relaxation import RELAXATIONS, Relaxation
@@ -45,8 +46,8 @@ class Resin:
     ``modulus`` MPa (instantaneous) and ``poisson``; ``relaxation``, the same for all moduli. ``strain``: ``hencky``,
     the total logarithmic strain, or ``green-naghdi``, the paper's rate form summed up step by step, or ``green``, the
     Saint Venant–Kirchhoff law, for comparison with other programs (the three differ in large strains only).
-    ``thickness``: ``incompressible``, thicker as the area falls, or ``constant``, the letter of Eq. 6. FormingError
-    where something is out of range.
+    ``thickness``: ``incompressible``, thicker as the area falls, or ``constant``, the letter of Eq. 6, which
+    ``green`` does not know. FormingError where something is out of range.
     """
 
     modulus: float = 45.0
@@ -63,6 +64,11 @@ class Resin:
             raise FormingError(f"there is no strain '{self.strain}'; choose {', '.join(STRAIN_FORMS)}")
         if self.thickness not in THICKNESS_RULES:
             raise FormingError(f"there is no thickness rule '{self.thickness}'; choose {', '.join(THICKNESS_RULES)}")
+        if self.strain == "green" and self.thickness == "constant":
+            raise FormingError(
+                "the strain 'green' takes the stress over the flat cloth and knows no constant thickness; choose "
+                "another strain, or the thickness rule 'incompressible'"
+            )
 
     @property
     def shear_modulus(self) -> float:
@@ -99,6 +105,14 @@ class Cloth:
     def families(self) -> tuple[Fibre, Fibre]:
         """Warp and weft."""
         return self.warp, self.weft
+
+
+Record = TypeVar("Record", Fibre, Resin, Cloth)
+
+
+def changed(record: Record, **values: Any) -> Record:
+    """A cloth, or a part of one, with those of ``values`` that are not None; FormingError where one cannot be."""
+    return replace(record, **{name: value for name, value in values.items() if value is not None})
 
 
 def _at_least_zero(name: str, value: float, unit: str) -> None:

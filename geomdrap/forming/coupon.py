@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from geomdrap.forming.biaxial import JERSEY, biaxial_specimen
-from geomdrap.forming.cloth import Cloth
+from geomdrap.forming.cloth import Cloth, Fibre
 from geomdrap.forming.picture_frame import shear_frame
 from geomdrap.forming.specimen import Pulled, Specimen, pull
 from geomdrap.forming.uniaxial import kinematic_lock, strip_specimen
@@ -24,11 +24,22 @@ FEWEST, MOST = 10_000, 400_000
 
 @dataclass(frozen=True, eq=False)
 class Coupon:
-    """A test that was made: its name, its ``settings`` by name (mm, mm/min, degrees), and its ``result``."""
+    """A test that was made: its name, its ``settings`` by name (mm, mm/min, degrees), and its ``result``.
+
+    Of the settings ``steps`` are those taken up to the last reading.
+    """
 
     test: str
     settings: dict[str, Any]
     result: Pulled
+
+
+def usual_cloth(test: str) -> Cloth:
+    """The cloth of ``test`` unless told otherwise: a knit for ``biaxial``, straight yarns for ``bias-extension``."""
+    if test == "biaxial":
+        return JERSEY
+    straight = Fibre(undulation=0.0)
+    return Cloth(straight, straight) if test == "bias-extension" else Cloth()
 
 
 def uniaxial(
@@ -55,7 +66,7 @@ def uniaxial(
     taken = steps or enough_steps(specimen)
     pulled = pull(specimen, displacement, speed, taken, frames, progress, scale_mass=not keep_mass)
     settings = {"angle": angle, "speed": speed, "length": length, "width": width, "displacement": displacement}
-    return Coupon("uniaxial", {**settings, "steps": taken}, pulled)
+    return Coupon("uniaxial", {**settings, **_run_settings(pulled, cells, frames, keep_mass)}, pulled)
 
 
 def bias_extension(
@@ -76,7 +87,9 @@ def picture_frame(
 ) -> Coupon:
     """Shear a square in a frame with bars of ``side`` mm and read it at each of ``shear`` deg; see `shear_frame`."""
     pulled = shear_frame(cloth, side, shear, speed, steps, progress)
-    return Coupon("picture-frame", {"side": side, "shear": list(shear), "speed": speed, "steps": steps}, pulled)
+    return Coupon(
+        "picture-frame", {"side": side, "shear": list(shear), "speed": speed, "steps": pulled.steps}, pulled
+    )
 
 
 def biaxial(
@@ -94,8 +107,12 @@ def biaxial(
     specimen = biaxial_specimen(cloth, cells=cells, ratio=ratio)
     taken = steps or enough_steps(specimen)
     pulled = pull(specimen, displacement, speed, taken, frames, progress, scale_mass=not keep_mass)
-    settings = {"displacement": displacement, "speed": speed, "ratio": ratio, "steps": taken}
-    return Coupon("biaxial", settings, pulled)
+    settings = {"displacement": displacement, "speed": speed, "ratio": ratio}
+    return Coupon("biaxial", {**settings, **_run_settings(pulled, cells, frames, keep_mass)}, pulled)
+
+
+def _run_settings(pulled: Pulled, cells: int, frames: int, keep_mass: bool) -> dict[str, Any]:
+    return {"cells": cells, "steps": pulled.steps, "frames": frames, "keep_mass": keep_mass}
 
 
 def enough_steps(specimen: Specimen) -> int:

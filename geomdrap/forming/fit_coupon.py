@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.errors import FormingError
-from geomdrap.forming.biaxial import JERSEY
-from geomdrap.forming.cloth import Cloth, Fibre
+from geomdrap.forming.cloth import Cloth, changed
 from geomdrap.forming.coupon import Coupon, bias_extension, biaxial, picture_frame, uniaxial
 from geomdrap.forming.identify import Curves, Identified, identify, slopes_of, with_more
 
@@ -41,6 +40,8 @@ FURTHER: dict[str, tuple[tuple[str, dict[str, Any]], ...]] = {
 """Tests that may be made on top: their name, and the setting that differs."""
 CELLS = 10
 """Cells across in the runs of a fit: four times faster than the usual mesh, and forces within a percent of it."""
+BEYOND = 1.0 + 1e-9
+"""Runs go so far beyond the last reading, since rounding must not leave it outside of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,14 +63,6 @@ class CouponFit:
     fitted: dict[str, Array]
     identified: Identified
     advice: tuple[Advice, ...]
-
-
-def usual_cloth(test: str) -> Cloth:
-    """The cloth at which a fit of ``test`` starts."""
-    if test == "biaxial":
-        return JERSEY
-    straight = Fibre(undulation=0.0)
-    return Cloth(straight, straight) if test == "bias-extension" else Cloth()
 
 
 def fit_coupon(
@@ -95,12 +88,10 @@ def fit_coupon(
         asked = {**dict(settings or {}), **other}
         return lambda values: predict(test, with_values(cloth, values), asked, displacement, tuple(measured))
 
-    simulate = simulation()
-    found = identify(simulate, measured, start, progress)
+    found = identify(simulation(), measured, start, progress)
     advice = _advice(test, found, simulation, dict(settings or {}))
     values = dict(zip(found.names, found.values.tolist(), strict=True))
-    fitted = {c: np.asarray(v) for c, v in simulate(values).items()}
-    return CouponFit(test, with_values(cloth, values), displacement, measured, fitted, found, advice)
+    return CouponFit(test, with_values(cloth, values), displacement, measured, dict(found.curves), found, advice)
 
 
 def _usable(test: str, readings: Mapping[str, Array]) -> dict[str, Array]:
@@ -147,17 +138,12 @@ def _start(cloth: Cloth, name: str) -> float:
 def with_values(cloth: Cloth, values: Mapping[str, float]) -> Cloth:
     """``cloth`` with parameters by name."""
     both = {"undulation": values.get("undulation"), "modulus": values.get("fibre-modulus")}
-    yarns = {side: _changed(getattr(cloth, side), **{**both, **_own(values, side)}) for side in ("warp", "weft")}
-    changed: Cloth = replace(cloth, resin=_changed(cloth.resin, modulus=values.get("resin-modulus")), **yarns)
-    return changed
+    yarns = {side: changed(getattr(cloth, side), **{**both, **_own(values, side)}) for side in ("warp", "weft")}
+    return changed(cloth, resin=changed(cloth.resin, modulus=values.get("resin-modulus")), **yarns)
 
 
 def _own(values: Mapping[str, float], side: str) -> dict[str, float]:
     return {"modulus": values[f"{side}-modulus"]} if f"{side}-modulus" in values else {}
-
-
-def _changed(record: Any, **values: float | None) -> Any:
-    return replace(record, **{name: value for name, value in values.items() if value is not None})
 
 
 def predict(
@@ -166,7 +152,8 @@ def predict(
     """Columns (n,) of a simulated test at ``displacement`` (n,) mm; NaN beyond where it stopped."""
     from scipy.interpolate import CubicSpline
 
-    pulled = _simulated(test, cloth, settings, float(np.max(displacement))).result
+    furthest = float(np.max(displacement)) * BEYOND
+    pulled = _simulated(test, cloth, settings, furthest).result
     given = {**pulled.forces, "shear": pulled.shear}
     if len(pulled.displacement) < 2:
         return {c: np.full(len(displacement), np.nan) for c in columns}

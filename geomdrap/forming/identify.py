@@ -24,15 +24,21 @@ STEP = 2e-3
 MIDDLE = 10.0
 """Where the logarithm of a parameter over its start is counted from: the solver's steps are shares of it."""
 MOST_RUNS = 40
-"""Simulations per parameter after which a fit gives up, and says so."""
+"""Simulations per parameter, those for slopes among them, after which a fit gives up, and says so."""
 CONFOUNDED = 0.95
 """Correlation from which two parameters are not told apart, if one of them is not known well by itself."""
 KNOWN = 0.05
 """Relative standard deviation up to which a parameter is known, whatever it is correlated with."""
 BLIND = 1e-12
 """Share of the information, from which on down there is none but rounding."""
-FLOOR = 0.05
-"""Share of the largest reading below which the error of a reading no longer falls with it."""
+FLOOR = 0.01
+"""Share of the largest force below which the error of a force no longer falls with it.
+
+With a twentieth most readings of a 45° strip, whose forces span two decades, would count for little, and the scatter
+of the others would be underrated.
+"""
+CAMERA = 0.05
+"""Share of the largest shear that every reading of shear counts as, since its error does not depend on it."""
 LOOSE = 0.5
 """Relative standard deviation from which a parameter is not known."""
 
@@ -44,7 +50,8 @@ class Identified:
     ``names`` (k,) of the parameters; ``values`` (k,); ``sigma`` (k,) standard deviations; ``correlation`` (k, k) of
     their logarithms; ``slopes`` (n, k): by how many standard deviations each reading rises per unit of the
     logarithms; ``scatter`` of the readings by column, as a share of their sizes (see `scales`); ``rms`` of the
-    residuals by column, in its unit; ``runs``: simulations made; ``converged``.
+    residuals by column, in its unit; ``curves`` (n,) by column at the values; ``runs``: simulations made, those for
+    slopes among them; ``converged``.
     """
 
     names: tuple[str, ...]
@@ -54,6 +61,7 @@ class Identified:
     slopes: Array
     scatter: dict[str, float]
     rms: dict[str, float]
+    curves: Curves
     runs: int
     converged: bool
 
@@ -90,53 +98,106 @@ def identify(
     """Fit the parameters ``start`` so that ``simulate`` gives ``measured``: (n,) by column, NaN where not read.
 
     Residuals are taken over the sizes of the readings (see `scales`), so that forces and angles can be fitted
-    together. FormingError where there are fewer readings than parameters, or none that is not zero.
+    together. After `MOST_RUNS` simulations per parameter, those for slopes among them, the fit stops at the best
+    values so far, not ``converged``. FormingError where there are fewer readings than parameters, or none that is not
+    zero, or where the simulation at the values that were found lacks a reading.
     """
     from scipy.optimize import least_squares
 
-    names, scale = tuple(start), scales(measured)
-    begin = np.array(list(start.values()))
+    names, size = tuple(start), scales(measured)
     used = {c: np.isfinite(measured[c]) for c in measured}
     if sum(int(u.sum()) for u in used.values()) <= len(names):
         raise FormingError(f"there are too few readings for {len(names)} parameters; fit fewer, or measure more")
-    runs = 0
+    search = _Search(simulate, measured, start, size, used, progress)
+    try:
+        found = least_squares(
+            search.residuals, np.full(len(names), MIDDLE), search.slopes, method="lm", xtol=1e-5, ftol=1e-6
+        )
+        place, converged = found.x, bool(found.success)
+    except _SpentError:
+        place, converged = search.best(), False
+    search.most = MOST_RUNS * len(names)
+    curves = search.curves(place)
+    _check_complete(curves, used)
+    errors = {c: (curves[c] - measured[c])[used[c]] for c in measured}
+    rms = {c: float(np.sqrt(np.mean(e**2))) for c, e in errors.items()}
+    shares = {c: e / size[c][used[c]] for c, e in errors.items()}
+    free = 1.0 - len(names) / sum(len(e) for e in errors.values())
+    scatter = {c: max(float(np.sqrt(np.mean(e**2) / free)), 1e-12) for c, e in shares.items()}
+    weights = np.concatenate([np.full(len(e), 1.0 / scatter[c]) for c, e in shares.items()])
+    slopes = search.slopes(place) * weights[:, None]
+    sigma, correlation = spread_of(slopes)
+    values = search.values(place)
+    return Identified(
+        names, values, values * sigma, correlation, slopes, scatter, rms, curves, search.runs, converged
+    )
 
-    def values_at(place: Array) -> Array:
-        return np.asarray(begin * np.exp(place - MIDDLE))
 
-    def residuals(place: Array) -> Array:
-        nonlocal runs
-        runs += 1
-        if progress:
-            progress(runs)
-        curves = simulate(dict(zip(names, values_at(place).tolist(), strict=True)))
-        out = np.concatenate([((curves[c] - measured[c]) / scale[c])[used[c]] for c in measured])
+class _SpentError(Exception):
+    """All simulations that a fit may make are made."""
+
+
+class _Search:
+    """What a fit has tried: each place is simulated once, and counted."""
+
+    def __init__(
+        self,
+        simulate: Simulate,
+        measured: Curves,
+        start: Mapping[str, float],
+        size: Curves,
+        used: Mapping[str, NDArray[np.bool_]],
+        progress: Callable[[int], None] | None,
+    ):
+        self.simulate, self.measured, self.size, self.used, self.progress = simulate, measured, size, used, progress
+        self.names, self.begin = tuple(start), np.array(list(start.values()))
+        self.most = (MOST_RUNS - 1) * len(self.names) - 1  # the rest is for the slopes at the end
+        self.runs = 0
+        self._seen: dict[bytes, Curves] = {}
+
+    def values(self, place: Array) -> Array:
+        return np.asarray(self.begin * np.exp(place - MIDDLE))
+
+    def curves(self, place: Array) -> Curves:
+        key = place.tobytes()
+        if key not in self._seen:
+            if self.runs >= self.most:
+                raise _SpentError
+            self.runs += 1
+            if self.progress:
+                self.progress(self.runs)
+            self._seen[key] = self.simulate(dict(zip(self.names, self.values(place).tolist(), strict=True)))
+        return self._seen[key]
+
+    def residuals(self, place: Array) -> Array:
+        curves = self.curves(place)
+        parts = [((curves[c] - self.measured[c]) / self.size[c])[self.used[c]] for c in self.measured]
+        out = np.concatenate(parts)
         return np.where(np.isfinite(out), out, 1e3)  # a run that ended early is far off
 
-    first = np.full(len(names), MIDDLE)
-    found = least_squares(
-        residuals,
-        first,
-        method="lm",
-        diff_step=0.0 * first + STEP / MIDDLE,
-        xtol=1e-5,
-        ftol=1e-6,
-        max_nfev=MOST_RUNS * len(names),
-    )
-    counts = [int(used[c].sum()) for c in measured]
-    parts = dict(zip(measured, np.split(found.fun, np.cumsum(counts)[:-1]), strict=True))
-    rms = {c: float(np.sqrt(np.mean((part * scale[c][used[c]]) ** 2))) for c, part in parts.items()}
-    free = 1.0 - len(names) / sum(counts)
-    scatter = {c: max(float(np.sqrt(np.mean(part**2) / free)), 1e-12) for c, part in parts.items()}
-    weights = np.concatenate([np.full(len(part), 1.0 / scatter[c]) for c, part in parts.items()])
-    slopes = found.jac * weights[:, None]
-    sigma, correlation = spread_of(slopes)
-    values = values_at(found.x)
-    return Identified(names, values, values * sigma, correlation, slopes, scatter, rms, runs, bool(found.success))
+    def slopes(self, place: Array) -> Array:
+        base = self.residuals(place)
+        moved = [self.residuals(place + STEP * row) for row in np.eye(len(place))]
+        return np.stack([(up - base) / STEP for up in moved], axis=1)
+
+    def best(self) -> Array:
+        places = [np.frombuffer(key) for key in self._seen]
+        return min(places, key=lambda place: float(np.sum(self.residuals(place) ** 2)))
+
+
+def _check_complete(curves: Curves, used: Mapping[str, NDArray[np.bool_]]) -> None:
+    for column, chosen in used.items():
+        missing = np.flatnonzero(chosen & ~np.isfinite(curves[column]))
+        if len(missing):
+            listed = ", ".join(str(n + 1) for n in missing[:5]) + (", …" if len(missing) > 5 else "")
+            raise FormingError(
+                f"the simulation at the best values found ends before the {column} of reading {listed}; start the "
+                "fit elsewhere, or leave those readings out"
+            )
 
 
 def scales(readings: Curves) -> dict[str, Array]:
-    """The size of each reading by column: a twentieth of the largest there; for a force its own, if that is more.
+    """The size of each reading by column: a force's own, or `FLOOR` of the largest if more; for shear `CAMERA` of it.
 
     Load cells err in proportion to what they read; cameras do not.
     FormingError where a column holds nothing but zeros.
@@ -146,7 +207,9 @@ def scales(readings: Curves) -> dict[str, Array]:
     if empty:
         raise FormingError(f"the column {empty[0]} holds no reading other than 0; leave it out")
     return {
-        c: np.maximum(np.abs(values) if c.startswith("force") else 0.0, np.full(len(values), FLOOR * largest[c]))
+        c: np.maximum(np.abs(values), FLOOR * largest[c])
+        if c.startswith("force")
+        else np.full(len(values), CAMERA * largest[c])
         for c, values in readings.items()
     }
 

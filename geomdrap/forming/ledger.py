@@ -55,7 +55,7 @@ class Ledger:
         """Change of the balance since ``before`` over the largest energy of the two, a share."""
         drift = self.balance - (before.balance if before else 0.0)
         sizes = [e.kinetic + abs(e.internal) + abs(e.external) for e in (self, before) if e]
-        return abs(drift) / max(*sizes, 1e-300) if len(sizes) > 1 else abs(drift) / max(sizes[0], 1e-300)
+        return abs(drift) / max(*sizes, 1e-300)
 
 
 def ledger_of(model: Model, state: State) -> Ledger:

@@ -37,7 +37,7 @@ def shear_frame(
     The corner moves at ``speed`` mm/min; ``steps`` in all, in which the resin relaxes. The force is that on the
     corner. FormingError where a number is out of range.
     """
-    angles = _checked(shear, side, speed)
+    angles = _checked(shear, side, speed, steps)
     stops, pace = [_opening(side, math.radians(a)) for a in angles], speed / 60.0
     step = stops[-1] / pace / steps
     specimen = Specimen(rectangle(1, 1, side).moved(_corners(side, 0.0)), cloth, np.arange(4), np.zeros((4, 3)), {})
@@ -56,16 +56,18 @@ def shear_frame(
     force = [float(np.sum(f.reaction * _leverage(side, a))) for f, a in zip(frames, (0.0, *angles), strict=True)]
     seen = np.array([middle_shear(specimen.sheet, f.points) for f in frames])
     run = Run(model, tuple(frames), state, "")
-    return Pulled(specimen, run, np.array([0.0, *stops]), {"force": np.array(force)}, seen, 0.0, "")
+    return Pulled(specimen, run, np.array([0.0, *stops]), {"force": np.array(force)}, seen, 0.0)
 
 
-def _checked(shear: Sequence[float], side: float, speed: float) -> list[float]:
+def _checked(shear: Sequence[float], side: float, speed: float, steps: int) -> list[float]:
     angles = [float(a) for a in shear]
     if not (angles and angles[0] > 0.0 and angles[-1] < 90.0 and all(a < b for a, b in pairwise(angles))):
         listed = ", ".join(f"{a:g}" for a in angles)
         raise FormingError(f"the shear of a frame must ascend, from above 0 to below 90 degrees; got {listed}")
     if not (side > 0.0 and speed > 0.0):
         raise FormingError(f"a frame needs a side and a speed above 0; got {side:g} mm and {speed:g} mm/min")
+    if steps < len(angles):
+        raise FormingError(f"{steps} steps are too few for {len(angles)} readings; take at least {len(angles)}")
     return angles
 
 

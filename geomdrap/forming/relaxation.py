@@ -6,8 +6,8 @@ meaning is given (A. Cherouat, H. Borouchaki, Materials 2 (2009) 1835). Each rea
 - ``table``: they are the shares g_k of Eq. 5, dimensionless. Their sum 0.5696 is below one, as it must be.
 - ``creep``: they are samples of a creep compliance in 1/MPa; the first, 0.0233, is nearly 1/E = 0.0222. Inverted to a
   relaxation by the hereditary integral, taken straight in the logarithm of time between the samples. The compliance
-  has a corner at 0.1 s that no Prony series follows: ∫ E(t − s) dJ(s) = 1 is met to 33 % just behind it, to 7 % from
-  1 s and 3 % from 3 s on.
+  has a corner at 0.1 s that no Prony series follows: ∫ E(t − s) dJ(s) = 1, with E(0) = 1/0.02332 MPa, is met to
+  33 % at it, to 17 % from 0.2 s, 7 % from 1 s and 3.3 % from 3 s on.
 - ``single``: one time, the 15.5 s of the text (which is, to the digit, the shear modulus in MPa, so perhaps a slip),
   with the sum of the table as its share.
 """

@@ -1,7 +1,7 @@
 """The mesh of a ply: crossings of yarns, triangles of resin, pieces of yarn that belong to cells.
 
 Each cell owns a piece of yarn per side, with half the yarn section that lies between its sides. Pieces on a side that
-two cells share lie double, so that refining or clipping cells never gains or loses yarn.
+two cells share lie double here, so that cells can be clipped one by one; a `Model` makes them one.
 """
 
 from __future__ import annotations

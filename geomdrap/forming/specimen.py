@@ -14,7 +14,6 @@ from geomdrap.forming.cloth import Cloth
 from geomdrap.forming.model import make_model
 from geomdrap.forming.run import Run, drive
 from geomdrap.forming.sheet import Sheet
-from geomdrap.forming.stable_step import SAFETY
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -46,8 +45,7 @@ class Pulled:
     """A specimen after its test.
 
     ``displacement`` (f,) mm; ``forces`` N by the name of the reader, each (f,); ``shear`` (f,) deg in the middle of
-    the specimen; ``kinetic_share`` the largest from a quarter of the way on; ``stopped``: a sentence if the test
-    ended early.
+    the specimen; ``kinetic_share`` the largest from a quarter of the way on.
     """
 
     specimen: Specimen
@@ -56,7 +54,16 @@ class Pulled:
     forces: dict[str, Array]
     shear: Array
     kinetic_share: float
-    stopped: str
+
+    @property
+    def stopped(self) -> str:
+        """A sentence if the test ended early, else empty."""
+        return self.run.stopped
+
+    @property
+    def steps(self) -> int:
+        """The time steps up to the last reading."""
+        return round(self.run.frames[-1].time / self.run.model.step)
 
     @property
     def balance_error(self) -> float:
@@ -80,8 +87,6 @@ def pull(
     steps: int = 60_000,
     frames: int = 50,
     progress: Callable[[float], None] | None = None,
-    damping: float = DAMPING,
-    safety: float = SAFETY,
     scale_mass: bool = True,
 ) -> Pulled:
     """Pull ``specimen`` by ``displacement`` mm at ``speed`` mm/min in ``steps`` steps, and read it ``frames`` times.
@@ -97,9 +102,7 @@ def pull(
     half = max(1, round(0.5 * steps / frames))
     duration = displacement / pace
     step = duration / (2 * half * frames)
-    model = make_model(
-        specimen.sheet, specimen.cloth, step, specimen.held, damping / duration, scale_mass, safety
-    )
+    model = make_model(specimen.sheet, specimen.cloth, step, specimen.held, DAMPING / duration, scale_mass)
     rest, way = model.sheet.points[model.driven], specimen.flow[model.driven]
 
     def path(time: float) -> Array:
@@ -117,7 +120,7 @@ def _read(specimen: Specimen, run: Run, pace: float) -> Pulled:
     shear = np.array([middle_shear(specimen.sheet, f.points) for f in run.frames])
     late = [f.ledger.kinetic_share for f in run.frames[1:] if f.time >= 0.25 * run.frames[-1].time]
     displacement = pace * np.array([f.time for f in run.frames])
-    return Pulled(specimen, run, displacement, forces, shear, max(late, default=0.0), run.stopped)
+    return Pulled(specimen, run, displacement, forces, shear, max(late, default=0.0))
 
 
 def gradients(sheet: Sheet, points: Array) -> Array:

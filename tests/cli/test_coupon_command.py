@@ -14,7 +14,9 @@ QUICK = ("--cells", 4, "--steps", 800, "--frames", 8, "--outputs", "none")
 
 
 def test_the_frame_gives_a_reading_at_each_shear_that_was_asked_for(run: Callable[..., Result]) -> None:
-    result = run("coupon", "picture-frame", "--side", 100, "--thickness", 2, "--shear", "10,30,45", "--elastic", "--json")
+    result = run(
+        "coupon", "picture-frame", "--side", 100, "--thickness", 2, "--shear", "10,30,45", "--elastic", "--json"
+    )
     document = json.loads(result.stdout)
     assert result.exit_code == 0
     assert document["schema"] == "geomdrap.coupon/1"
@@ -23,6 +25,17 @@ def test_the_frame_gives_a_reading_at_each_shear_that_was_asked_for(run: Callabl
     assert curve["force"][1:] == pytest.approx([894.40, 5295.88, 17518.13], abs=0.005)
     assert 0.0 <= document["energy"]["balance_error"] < 1e-6
     assert {Path(f).name for f in document["files"].values()} == {"coupon.json", "coupon.csv", "coupon.png"}
+
+
+def test_the_settings_are_those_of_the_run_that_was_made(run: Callable[..., Result]) -> None:
+    options = ("--cells", 4, "--steps", 810, "--frames", 8, "--displacement", 5, "--outputs", "none", "--json")
+    for test in ("uniaxial", "bias-extension", "biaxial"):
+        document = json.loads(run("coupon", test, *options).stdout)
+        settings = document["settings"]
+        taken = settings["displacement"] / (settings["speed"] / 60.0) / document["step"]["taken"]
+        assert settings["steps"] == pytest.approx(taken, rel=1e-7)
+        assert settings["steps"] != 810  # frames need a whole and even number each
+        assert (settings["cells"], settings["frames"], settings["keep_mass"]) == (4, 8, False)
 
 
 def test_the_files_hold_what_was_printed(run: Callable[..., Result], tmp_path: Path) -> None:
@@ -73,7 +86,7 @@ def test_a_test_with_too_few_steps_says_that_inertia_shows(run: Callable[..., Re
 def test_a_test_that_diverges_keeps_what_it_had_and_ends_with_1(
     run: Callable[..., Result], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("geomdrap.forming.model.mass_for_step", lambda mass, rows, step, _: rows * (step / 6.0) ** 2)
+    monkeypatch.setattr("geomdrap.forming.model.mass_for_step", lambda mass, rows, step, _: rows * (step / 2.8) ** 2)
     monkeypatch.setattr("geomdrap.forming.model.stable_step", lambda *_: np.inf)
     result = run("coupon", "bias-extension", "--displacement", 20, *QUICK, "--json")
     document = json.loads(result.stdout)
@@ -81,7 +94,7 @@ def test_a_test_that_diverges_keeps_what_it_had_and_ends_with_1(
     assert document["complete"] is False
     assert "diverged at" in document["warnings"][0]
     assert "near u =" in result.stderr
-    assert len(document["curve"]["displacement"]) >= 1
+    assert 2 <= len(document["curve"]["displacement"]) < 9  # frames before it, and not all
 
 
 @pytest.mark.parametrize(
@@ -95,7 +108,8 @@ def test_a_test_that_diverges_keeps_what_it_had_and_ends_with_1(
         (("--prony", "10"), "pairs of numbers"),
         (("--speed", "0"), "displacement and speed must be above 0; got 30 mm and 0 mm/min"),
         (("--steps", "10"), "10 steps are too few for 50 frames; take at least 200"),
-        (("--cells", "1"), "at least 2 cells across"),
+        (("--cells", "1"), "1 is not in the range x>=2"),
+        (("--relaxation", "creep", "--elastic"), "--elastic and --relaxation creep contradict each other"),
         (("--keep-mass",), "over the stable limit of "),
         (("--thickness", "0"), "the thickness of the cloth must be above 0 mm"),
         (("--displacement", "nan"), "not a finite number"),
@@ -128,6 +142,67 @@ def test_choices_on_the_command_line_are_those_of_the_library() -> None:
     assert coupon_fit.TESTS == fit_coupon.TESTS
     assert set(coupon_fit.FITTED) == set(fit_coupon.UNITS)
     assert set(coupon_fit.SETTINGS) == set(fit_coupon.TESTS)
+
+
+def _shear_table(path: Path, text: str) -> None:
+    path.write_text("series,displacement,force,shear\n" + text, encoding="utf-8")
+
+
+@pytest.fixture
+def no_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No fit may begin."""
+
+    def never(*_: object) -> None:
+        raise AssertionError("the fit has begun")
+
+    monkeypatch.setattr("geomdrap.forming.fit_coupon.fit_coupon", never)
+
+
+@pytest.mark.usefixtures("no_fit")
+@pytest.mark.parametrize("split", [0, 2, 50])
+def test_a_split_that_leaves_too_few_points_is_refused_before_the_fit(
+    error_of: Callable[..., str], tmp_path: Path, split: float
+) -> None:
+    _shear_table(tmp_path / "t.csv", "".join(f"a,{d},{9 * d},{0.9 * d}\n" for d in range(1, 13)))
+    said = error_of("coupon", "fit", "bias-extension", "t.csv", "--split", split)
+    assert f"the split at {split} mm leaves {min(split, 12)} of 12 points of the series 'a'" in said
+
+
+@pytest.mark.usefixtures("no_fit")
+@pytest.mark.parametrize(
+    ("test", "rows"),
+    [("uniaxial", "a,1,9,1\na,2,18,2\n"), ("bias-extension", "a,1,9,\n"), ("bias-extension", "a,1,9,1\nb,1,9,\n")],
+)
+def test_a_split_of_no_use_is_refused(error_of: Callable[..., str], tmp_path: Path, test: str, rows: str) -> None:
+    _shear_table(tmp_path / "t.csv", rows)
+    assert "a bias-extension test whose every series has shear" in error_of(
+        "coupon", "fit", test, "t.csv", "--split", 1
+    )
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ("".join(f"a,{d},,{d}\nb,{d},{9 * d},\n" for d in range(1, 9)), "no verdict: the series b has no shear"),
+        ("a,1,,1\na,2,,2\n", "no verdict: the split at 1.4 mm leaves 1 of 2 points of the series 'a'"),
+    ],
+)
+def test_a_fit_without_a_verdict_says_why(run: Callable[..., Result], tmp_path: Path, rows: str, said: str) -> None:
+    _shear_table(tmp_path / "t.csv", rows)
+    options = ("--cells", 2, "--steps", 800, "--fit", "fibre-modulus", "--elastic", "--outputs", "none")
+    result = run("coupon", "fit", "bias-extension", "t.csv", *options, "--json")
+    assert said in result.stderr
+    assert "lacks" not in json.loads(result.stdout)
+
+
+def test_fitting_tells_how_many_runs_it_has_made(
+    run: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+    monkeypatch.setattr("geomdrap.cli.progress.Progress.tell", lambda _, words: told.append(words))
+    _frame_twin(tmp_path / "frame.csv")
+    result = run("coupon", "fit", "picture-frame", "frame.csv", "--json", "--outputs", "none")
+    assert told == [f"{n} runs" for n in range(1, json.loads(result.stdout)["runs"] + 1)]
 
 
 def _frame_twin(path: Path) -> None:
@@ -172,9 +247,15 @@ def test_fit_tells_the_story_of_a_real_curve_and_its_doubt(run: Callable[..., Re
     [
         (("picture-frame", "none.csv"), "none.csv does not exist"),
         (("picture-frame", "frame.csv", "--angle", 30), "--angle is not a setting of a picture-frame test"),
-        (("picture-frame", "frame.csv", "--warp-modulus", 30), "--warp-modulus is not a start of a picture-frame fit"),
+        (
+            ("picture-frame", "frame.csv", "--warp-modulus", 30),
+            "--warp-modulus is not a start of a picture-frame fit",
+        ),
         (("biaxial", "frame.csv"), "fitted by force_warp or force_weft"),
-        (("picture-frame", "frame.csv", "--fit", "undulation"), "does not show undulation; choose from resin-modulus"),
+        (
+            ("picture-frame", "frame.csv", "--fit", "undulation"),
+            "does not show undulation; choose from resin-modulus",
+        ),
     ],
 )
 def test_a_fit_that_cannot_be_is_refused(

@@ -49,6 +49,14 @@ def test_a_quick_step_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     assert screen.getvalue() == ""
 
 
+def test_a_step_whose_end_is_not_known_shows_what_it_tells(monkeypatch: pytest.MonkeyPatch) -> None:
+    with _terminal(monkeypatch, patience=0.0) as screen, Progress() as steps:
+        steps.step("Fitting")
+        steps.tell("12 runs")
+    assert "\r\x1b[KFitting ... 12 runs" in screen.getvalue()
+    assert screen.getvalue().endswith("\r\x1b[K")
+
+
 def test_a_slow_step_shows_its_name_and_share_and_is_wiped_away(monkeypatch: pytest.MonkeyPatch) -> None:
     with _terminal(monkeypatch, patience=0.01) as screen, Progress() as steps:
         steps.step("Draping")

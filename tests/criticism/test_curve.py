@@ -150,3 +150,26 @@ def test_a_strip_wider_than_long_is_refused():
 def test_a_split_that_leaves_nothing_to_predict_is_refused(curves):
     with pytest.raises(MeasurementError, match="split"):
         judge_curves(curves, 500.0)
+
+
+def test_the_mechanical_effects_run_no_case_twice(monkeypatch):
+    from types import SimpleNamespace
+
+    from geomdrap.criticism import curve_mechanical
+    from geomdrap.forming import Cloth, Fibre
+
+    runs, shares = [], []
+
+    def pulled(cloth, furthest, *_, **__):
+        runs.append((cloth.warp.modulus, cloth.warp.undulation))
+        d = np.linspace(0.0, furthest, 9)
+        return SimpleNamespace(result=SimpleNamespace(displacement=d, shear=pin_jointed(d, 120.0), stopped=""))
+
+    monkeypatch.setattr(curve_mechanical, "bias_extension", pulled)
+    straight = Fibre(undulation=0.0)
+    effects = curve_mechanical.mechanical_effects(
+        Cloth(straight, straight), 150.0, 30.0, 20.0, progress=shares.append
+    )
+    assert len(runs) == len(set(runs)) == 10
+    assert shares == pytest.approx(np.arange(1, 11) / 10.0)
+    assert next(iter(effects)) == "mechanical"

@@ -47,8 +47,8 @@ def test_forces_vanish_at_the_equilibria_of_another_program_and_reactions_are_it
     scale = np.abs(membrane[held]).max()
     free = total[~held][:, :2] if case == "stretched" else total[~held]
     assert scale > 10.0
-    assert np.abs(free).max() < 1e-12 * np.abs(yarns).max()
+    assert np.abs(free).max() < 1e-13 * np.abs(yarns).max()
     reaction = data[f"{case}_reaction"][held]
-    assert np.abs(-total[held] - reaction).max() < 1e-12 * np.abs(reaction).max()
+    assert np.abs(-total[held] - reaction).max() < 1e-13 * np.abs(reaction).max()
     if case == "twisted":
         assert np.abs(data[case][:, 2]).max() > 10.0

@@ -74,7 +74,7 @@ def test_no_node_is_inside_a_tool_after_any_step(tool: Tool) -> None:
         gaps = [gap(state.tools[0], *place)[0] for place in state.points]
         deepest, touched = min(deepest, *gaps), touched + bool(np.any(state.impulse))
     assert touched > 5
-    assert deepest > -1e-7
+    assert deepest > -1e-13  # mm: rounding
 
 
 def test_energy_with_a_moving_tool_and_friction_balances() -> None:

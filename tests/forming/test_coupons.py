@@ -23,11 +23,12 @@ def test_the_picture_frame_has_the_force_of_the_closed_form(shear: float, force:
     g = np.deg2rad(shear)
     exact = 2.0 * 100.0 * float(trellis_slope(np.array(g))) / np.sin(0.25 * np.pi - 0.5 * g)
     assert exact == pytest.approx(force, abs=0.005)
-    assert result.forces["force"][-1] == pytest.approx(exact, rel=1e-6)
+    assert result.forces["force"][-1] == pytest.approx(exact, rel=1e-12)
     assert result.displacement[-1] == pytest.approx(
         200.0 * (np.cos(np.pi / 4 - g / 2) - np.cos(np.pi / 4)), rel=1e-12
     )
     assert result.shear[-1] == pytest.approx(shear, abs=1e-9)
+    assert result.balance_error < 1e-6
 
 
 def test_constant_thickness_takes_the_cosine_from_the_force_of_the_frame() -> None:
@@ -95,13 +96,17 @@ def test_bias_extension_has_force_and_shear_of_the_inextensible_net() -> None:
     ],
 )
 def test_off_axis_forces_are_those_of_the_inextensible_net(angle: float, cells: int, rows: tuple) -> None:
-    """T7, with yarns fifty times stiffer than aramid: 1.5 %. Nearer to the lock even they stretch by as much."""
+    """T7, with yarns fifty times stiffer than aramid: 1.5 %.
+
+    Not less, since the mesh is coarse, to keep the test short, and since nearer to the lock even such yarns stretch.
+    """
     yarn = Fibre(modulus=6.5e6, undulation=0.0)
     cloth, furthest = Cloth(yarn, yarn, Resin(relaxation=ELASTIC)), rows[-1][0]
     frames = 10 * round(furthest / rows[0][0])  # forces are means over a frame: short ones
     result = uniaxial(cloth, angle, 20.0, furthest, cells=cells, frames=frames).result
     for displacement, force in rows:
         assert _shown(result, displacement)[0] == pytest.approx(force, rel=0.015)
+    assert result.balance_error < 1e-3
 
 
 @pytest.mark.slow
@@ -136,8 +141,8 @@ def test_stiffness_falls_with_the_angle_and_undulation_delays_the_force() -> Non
 
 
 @pytest.mark.slow
-def test_the_equilibrium_is_the_one_that_a_minimiser_finds() -> None:
-    """T15: elastic energy and force of the relaxed explicit run, against a minimum by numpy alone; 1e-6."""
+def test_the_equilibrium_is_the_one_that_another_solver_finds() -> None:
+    """T15: places and force of the relaxed explicit run, against where the forces by numpy alone vanish; 1e-6."""
     from numpy_step import NumpyStep
     from scipy.optimize import root
 
@@ -169,23 +174,24 @@ def test_the_equilibrium_is_the_one_that_a_minimiser_finds() -> None:
     assert force == pytest.approx(pulled, rel=1e-6)
 
 
-def test_a_square_pulled_evenly_without_free_edges_is_in_plane_tension() -> None:
-    """Grips as wide as the sheet: warp and weft stretch alike, and both forces follow from one strain."""
+def test_the_yarns_that_cross_a_cut_carry_what_the_grips_beyond_it_pull() -> None:
+    """Grips as wide as the sheet, yarns alone: tensions, which are worked out from strains, against reactions."""
     yarn = Fibre(modulus=50.0, undulation=0.05)
-    cloth = Cloth(yarn, yarn, Resin(modulus=1.0, relaxation=ELASTIC), thickness=1.0)
-    result = pull(biaxial_specimen(cloth, 100.0, 100.0, 6), 10.0, 240.0, 4000, 5)
-    from geomdrap.forming import fibre_law
-
-    middle = result.run.frames[-1]
-    sheet = result.specimen.sheet
-    inner = np.all(np.abs(sheet.points[:, :2]) < 20.0, axis=1)
-    spread = middle.points[inner, :2] / sheet.points[inner, :2].clip(1e-9)
+    cloth = Cloth(yarn, yarn, Resin(modulus=0.0, relaxation=ELASTIC), thickness=1.0)
+    result = pull(biaxial_specimen(cloth, 100.0, 100.0, 6), 10.0, 240.0, 8000, 5)
     ends, tension, family = tensions(result)
-    near = np.linalg.norm(ends.mean(axis=1), axis=1) < 20.0
-    strain = np.log(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)[near] * 6 / 100.0)
-    assert tension[near] == pytest.approx(0.25 * fibre_law.stress(yarn, strain), rel=1e-9)
+    model, last = result.run.model, result.run.frames[-1]
+    rest = model.sheet.points
+    for axis in (0, 1):
+        side = rest[model.ends][:, :, axis].mean(axis=1)
+        across = (family == axis) & (np.abs(side - 25.0 / 3.0) < 1.0)  # the row of cells beyond the middle
+        along = ends[across, 1] - ends[across, 0]
+        pulled = tension[across] * model.section[across] / (yarn.share * cloth.thickness)
+        carried = np.sum(pulled * np.abs(along[:, axis]) / np.linalg.norm(along, axis=1))
+        beyond = rest[model.driven][:, axis] > 1.0
+        assert across.sum() == 7
+        assert carried == pytest.approx(last.reaction[beyond][:, axis].sum(), rel=1e-3)
     assert result.forces["force_warp"] == pytest.approx(result.forces["force_weft"], rel=1e-9)
-    assert spread.size > 0
 
 
 def test_the_jersey_has_the_forces_of_the_paper() -> None:
@@ -200,19 +206,20 @@ def test_the_jersey_has_the_forces_of_the_paper() -> None:
     assert not result.warnings
 
 
-def test_a_step_twice_the_limit_diverges_and_what_came_before_is_kept() -> None:
+def test_a_step_over_the_limit_diverges_and_what_came_before_is_kept() -> None:
     yarn = Fibre(undulation=0.0, compression=1.0)
     specimen = biaxial_specimen(Cloth(yarn, yarn), 100.0, 60.0, 6)
     model = make_model(specimen.sheet, specimen.cloth, 1e-3, specimen.held, safety=1.0)
     from dataclasses import replace
 
-    wild = replace(model, mass=model.mass / 9.0)
+    wild = replace(model, mass=model.mass / 2.0)  # so that it grows for a while; the bound is below the limit
     rest = wild.sheet.points[wild.driven]
     run = drive(wild, lambda t: rest + t * specimen.flow[wild.driven], 4000, 40)
     assert run.stopped.startswith("the run diverged at ")
     assert "near u = " in run.stopped
     assert "what came before is kept" in run.stopped
-    assert len(run.frames) >= 1
+    assert 2 <= len(run.frames) < 41
+    assert run.balance_error < 0.5
     assert all(np.isfinite(f.points).all() for f in run.frames)
 
 
@@ -226,6 +233,10 @@ def test_a_step_twice_the_limit_diverges_and_what_came_before_is_kept() -> None:
         (lambda: picture_frame(Cloth(), shear=[30.0, 10.0]), "must ascend"),
         (lambda: picture_frame(Cloth(), shear=[95.0]), "below 90 degrees"),
         (lambda: picture_frame(Cloth(), side=0.0), "a side and a speed above 0"),
+        (
+            lambda: picture_frame(Cloth(), shear=[1.0, 2.0, 3.0], steps=2),
+            "2 steps are too few for 3 readings; take at",
+        ),
         (lambda: biaxial_specimen(Cloth(), grip=300.0), "grips no wider"),
         (lambda: rectangle(0, 3, 1.0), "a cell or more"),
         (lambda: Fibre(modulus=-1.0), "fibre modulus must be 0 MPa or more; got -1"),
@@ -236,6 +247,7 @@ def test_a_step_twice_the_limit_diverges_and_what_came_before_is_kept() -> None:
         (lambda: Resin(poisson=0.5), "below 0.5; got 0.5"),
         (lambda: Resin(strain="small"), "no strain 'small'"),
         (lambda: Resin(thickness="thin"), "no thickness rule 'thin'"),
+        (lambda: Resin(strain="green", thickness="constant"), "'green' .* knows no constant thickness"),
         (lambda: Cloth(thickness=0.0), "thickness of the cloth must be above 0 mm"),
         (lambda: Cloth(density=-1.0), "density of the cloth must be above 0"),
     ],

@@ -99,17 +99,32 @@ def test_a_hanging_chain_swings_as_bessel_says(cells: int, error: float) -> None
     """ω₁ = j₀₁/2 √(g/L), to second order in the piece, from forces of the model about its stretched rest."""
     from scipy.linalg import eigh
 
+    from geomdrap.forming.state import add_forces
+
     length, gravity = 100.0, 9810.0
     sheet = rectangle(cells, 1, length / cells, "both")
-    fibre = Fibre(modulus=1e9, undulation=0.0, compression=1.0)
+    fibre = Fibre(modulus=1e5, undulation=0.0, compression=1.0)
     model = make_model(sheet, yarns_alone(fibre), driven=[0, 1])
-    weight = model.mass[::2] * gravity
-    tension = np.cumsum(weight[::-1])[::-1][1:]  # N in each piece: what hangs below it
-    stiffness = tension / (length / cells)
-    k = np.zeros((cells + 1, cells + 1))
-    for n, s in enumerate(stiffness):
-        k[n : n + 2, n : n + 2] += s * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    omega = np.sqrt(eigh(k[1:, 1:], np.diag(model.mass[::2][1:]), eigvals_only=True)[0])
+    mass = model.mass.reshape(-1, 2).sum(axis=1)  # of the two yarns, which swing as one
+    tension = gravity * np.cumsum(mass[::-1])[::-1][1:]  # N in each piece: what hangs below it
+    section = 0.25 * 2.0 * length / cells  # mm² of both yarns
+    stretched = length / cells * np.exp(tension / (fibre.modulus * section))
+    hung = np.column_stack(
+        [np.repeat(np.r_[0.0, np.cumsum(stretched)], 2), sheet.fabric[:, 1], 0.0 * sheet.fabric[:, 1]]
+    )
+
+    def forces(aside: np.ndarray) -> np.ndarray:
+        """Forces (n, 3) on the crossings with both yarns moved aside."""
+        state = start(model)
+        state.x[:] = (hung + np.repeat(aside, 2)[:, None] * [0.0, 0.0, 1.0]).ravel()
+        add_forces(model, state)
+        return state.f.reshape(-1, 2, 3).sum(axis=1)
+
+    assert forces(np.zeros(cells + 1))[1:, 0] == pytest.approx(-gravity * mass[1:], rel=1e-5)  # at rest
+    aside = 1e-7 * length / cells  # tension turns, nothing stretches
+    k = np.stack([-forces(aside * row)[1:, 2] / aside for row in np.eye(cells + 1)[1:]])
+    assert k == pytest.approx(k.T, abs=1e-6 * np.abs(k).max())
+    omega = np.sqrt(eigh(0.5 * (k + k.T), np.diag(mass[1:]), eigvals_only=True)[0])
     exact = 2.404825557695773 / 2.0 * np.sqrt(gravity / length)
     assert abs(omega / exact - 1.0) == pytest.approx(error, rel=0.05)
 
@@ -167,8 +182,11 @@ def test_a_net_shaken_hard_keeps_its_energy(safety: float, error: float) -> None
     assert np.abs(momentum).max() < 1e-15
 
 
-@pytest.mark.parametrize(("safety", "error"), [(0.15, 6e-4), (0.3, 1.8e-3), (0.5, 2.1e-3), (0.9, 1.3e-2)])
+@pytest.mark.parametrize(
+    ("safety", "error"), [(0.075, 1.9e-4), (0.15, 6e-4), (0.3, 1.8e-3), (0.5, 2.1e-3), (0.9, 1.3e-2)]
+)
 def test_a_net_of_undulated_yarns_that_go_slack_keeps_its_energy(safety: float, error: float) -> None:
+    """1.9e-4 asks for half the step of 0.15 with these velocities: stiffness jumps where a yarn is pulled straight."""
     yarns = Fibre(undulation=0.005, compression=0.0)
     early, late, momentum = _shaken(Cloth(yarns, yarns, Resin(relaxation=ELASTIC)), safety)
     assert max(early, late) < error

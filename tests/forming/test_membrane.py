@@ -84,8 +84,6 @@ def _trellis(angle: float) -> np.ndarray:
 def test_in_trellis_shear_the_rate_form_and_the_total_strain_are_one() -> None:
     """Nothing turns there, and the principal axes stay."""
     model, total = _deformed(resin_alone(), _trellis(np.deg2rad(50.0)))
-    _, summed = _deformed(resin_alone(strain="green-naghdi"), _trellis(np.deg2rad(50.0)), 1, 2000)
-    # along a straight line of gradients the path is not a trellis, its end is: step along the trellis instead
     state = start(make_model(model.sheet, resin_alone(strain="green-naghdi")))
     walker = make_model(model.sheet, resin_alone(strain="green-naghdi"))
     for angle in np.deg2rad(np.linspace(0.0, 50.0, 2001))[1:]:
@@ -106,8 +104,9 @@ def _distorted(cloth: object) -> object:
     return make_model(moved, cloth), inner  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("strain", ["hencky", "green"])
-@pytest.mark.parametrize("thickness", ["incompressible", "constant"])
+@pytest.mark.parametrize(
+    ("strain", "thickness"), [("hencky", "incompressible"), ("hencky", "constant"), ("green", "incompressible")]
+)
 def test_a_patch_of_distorted_triangles_carries_one_stress_and_balances(strain: str, thickness: str) -> None:
     model, inner = _distorted(resin_alone(strain=strain, thickness=thickness))  # type: ignore[misc]
     state = start(model)
@@ -115,7 +114,7 @@ def test_a_patch_of_distorted_triangles_carries_one_stress_and_balances(strain: 
     state.x[:] = (model.sheet.fabric @ gradient.T + [5.0, -3.0, 11.0]).ravel()
     add_forces(model, state)
     stress = _elastic_stress(model, state)
-    assert np.ptp(stress, axis=0) == pytest.approx(0.0, abs=1e-11)
+    assert np.ptp(stress, axis=0).max() < 1e-12 * np.abs(stress).max()
     scale = np.abs(state.f).max()
     assert np.abs(state.f.reshape(-1, 3)[inner]).max() < 1e-12 * scale
 
@@ -145,7 +144,7 @@ def test_a_rotation_leaves_the_relaxing_stresses_as_they_are() -> None:
             add_forces(model, state)
     assert turned.history == pytest.approx(still.history, abs=1e-12 * np.abs(still.history).max())
     assert turned.f.reshape(-1, 3) == pytest.approx(
-        still.f.reshape(-1, 3) @ turn.T, abs=1e-11 * np.abs(still.f).max()
+        still.f.reshape(-1, 3) @ turn.T, abs=1e-12 * np.abs(still.f).max()
     )
 
 
