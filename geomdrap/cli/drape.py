@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,7 @@ from geomdrap.cli.options import (
     part_argument,
     quiet_option,
     reading_options,
+    roll_options,
     seed_options,
 )
 
@@ -58,6 +60,7 @@ THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
     metavar="DEG,DEG,...",
     help="A stack instead of one ply: angles from --angle, the tool's side first, each ply draped on those below it.",
 )
+@roll_options
 @element_options
 @click.option(
     "--paper",
@@ -97,6 +100,7 @@ def drape(
       geomdrap drape hood.stl --plies 0,45,-45,90 --ply-thickness 0.3 -o laminate
       geomdrap drape hood.stl --effect slip:coefficient=0.6 --effect thickness:offset=1.5
       geomdrap drape hood.stl --angle 45 --outputs cut,pdf --paper A3
+      geomdrap drape hood.stl --angle 45 --roll-width 600 --seam-overlap 20
       geomdrap drape hood.stl --angle 45 --onto hood_fe.inp --ply-thickness 0.3
     """
     from geomdrap.cli.messages import print_json, say
@@ -109,6 +113,7 @@ def drape(
     context = click.get_current_context()
     if context.get_parameter_source("angle") == ParameterSource.COMMANDLINE:
         _refuse_guides(asked, "--angle")
+    _check_roll(asked, plies)
     if plies is not None:
         from geomdrap.cli.plies import drape_plies
 
@@ -166,6 +171,17 @@ def _refuse_guides(asked: dict[str, Any], other: str) -> None:
             del asked[name]
 
 
+def _check_roll(asked: dict[str, Any], plies: str | None) -> None:
+    """Refuse an overlap without a roll, and a roll for a stack of plies; for a stack its options are taken away."""
+    context = click.get_current_context()
+    if asked["seam_overlap"] is not None and asked["roll_width"] is None:
+        raise click.UsageError("--seam-overlap is of strips of a roll: give --roll-width, too", context)
+    if plies is not None:
+        if asked["roll_width"] is not None:
+            raise click.UsageError("--roll-width takes one ply: leave --plies out", context)
+        del asked["roll_width"], asked["seam_overlap"]
+
+
 def read_guides(**files: Path | None) -> dict[str, Any]:
     """The points of guide curves by name."""
     from geomdrap.sweep.origins import read_points
@@ -189,9 +205,11 @@ def compute(
     warp_guide: Path | None = None,
     weft_guide: Path | None = None,
     plugins: tuple[Path, ...] = (),
+    roll_width: float | None = None,
+    seam_overlap: float | None = None,
     **drape_options: Any,
 ) -> Drape:
-    """Read, drape and evaluate; ``drape_options`` go to `geomdrap.drape` as they are."""
+    """Read, drape, evaluate and lay on the roll; ``drape_options`` go to `geomdrap.drape` as they are."""
     import geomdrap as gd
     from geomdrap.cli.acting import effects_of
     from geomdrap.cli.part import read_part
@@ -214,4 +232,9 @@ def compute(
         result: Drape = gd.evaluate(net, limit_angle, progress.share)
         return result
 
-    return at(asked) if asked is not None else finer_where_coarse(at(None), at)
+    draped = at(asked) if asked is not None else finer_where_coarse(at(None), at)
+    if roll_width is None:
+        return draped
+    from geomdrap.fields.roll import lay_on_roll
+
+    return replace(draped, roll=lay_on_roll(draped, roll_width, seam_overlap or 0.0))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -79,7 +79,7 @@ def sheet(pieces: tuple[Piece, ...], pages: Tiling, tile: Tile) -> Any:
     return figure
 
 
-def draw_pieces(axes: Any, pieces: Iterable[Piece], shift: Floats, frame: Any) -> None:
+def draw_pieces(axes: Any, pieces: Sequence[Piece], shift: Floats, frame: Any) -> None:
     """Contours, cut-outs, notches, axes and grain lines, moved by (2,) mm and cut off at the frame."""
     for piece in pieces:
         for polygon in (piece.outer, *piece.inner):
@@ -91,9 +91,12 @@ def draw_pieces(axes: Any, pieces: Iterable[Piece], shift: Floats, frame: Any) -
             write_in(axes, notch.at + 2.2 * DEPTH * notch.inward + shift, notch.mark.lower(), frame)
         for line in piece.axes:
             draw(axes, line + shift, frame, color=palette.FAINT, lw=0.15 * POINT, ls=(0, (8, 3, 1, 3)))
+        for line in piece.seams:
+            draw(axes, line + shift, frame, color=palette.SEAM, lw=0.25 * POINT, ls=(0, (4, 3)))
         draw_grain(axes, piece.grain + shift, frame)
     seed = {"marker": "o", "ms": 3.0 * POINT, "mfc": "none", "mec": palette.INK, "mew": 0.2 * POINT}
-    draw(axes, np.zeros((1, 2)) + shift, frame, **seed)
+    for place in sorted({tuple(piece.seed.tolist()) for piece in pieces if np.isfinite(piece.seed).all()}):
+        draw(axes, np.array([place]) + shift, frame, **seed)
 
 
 def write_in(axes: Any, at: Floats, words: str, frame: Any) -> None:
