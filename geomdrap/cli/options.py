@@ -192,7 +192,7 @@ def roll_options(function: F) -> F:
         click.option(
             "--roll-width",
             type=Number("MM", above=0.0),
-            help="Width of the roll of fabric, along the weft: a pattern that is higher is laid from strips with seams.",
+            help="Width of the roll of fabric, along the weft: a higher pattern is laid from strips with seams.",
         ),
     ):
         function = option(function)

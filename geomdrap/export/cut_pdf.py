@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from geomdrap.errors import GeomdrapError
 from geomdrap.export import palette
-from geomdrap.export.cut_pieces import DEPTH, Piece, cut_pieces
+from geomdrap.export.cut_pieces import DEPTH, Piece, cut_pieces, style_name
 from geomdrap.export.cut_tiles import MARGIN, OVERLAP, Tile, Tiling, tiling
 from geomdrap.export.drawing import note_words
 from geomdrap.export.glyphs import drawable
@@ -43,7 +43,7 @@ def write(result: Drape, path: Path, paper: str = "A4") -> None:
         raise GeomdrapError("there is no flat pattern to print; leave pdf out of --outputs")
     pages = tiling(pieces, paper)
     buffer = io.BytesIO()
-    with PdfPages(buffer, metadata={"CreationDate": None, "Title": f"{pieces[0].name}: flat pattern"}) as pdf:
+    with PdfPages(buffer, metadata={"CreationDate": None, "Title": f"{style_name(pieces)}: flat pattern"}) as pdf:
         pdf.savefig(overview(result, pieces, pages, paper))
         for tile in pages.tiles:
             pdf.savefig(sheet(pieces, pages, tile))
@@ -70,7 +70,7 @@ def sheet(pieces: tuple[Piece, ...], pages: Tiling, tile: Tile) -> Any:
     axes.add_patch(frame)
     draw_pieces(axes, pieces, MARGIN - tile.lower, frame)
     draw_marks(axes, pages)
-    name = f"{pieces[0].name}   row {tile.row} of {pages.rows}, column {tile.column} of {pages.columns}"
+    name = f"{style_name(pieces)}   row {tile.row} of {pages.rows}, column {tile.column} of {pages.columns}"
     axes.text(pages.page[0] - MARGIN, 0.5 * MARGIN, name, fontsize=8, ha="right", va="center", color=palette.INK)
     x, y = MARGIN, 0.35 * MARGIN
     bar = np.array([[x, y + 2], [x, y], [x + CHECK, y], [x + CHECK, y + 2]])

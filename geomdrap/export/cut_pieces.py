@@ -49,6 +49,7 @@ class Piece:
     ``outer`` (k, 2) counter-clockwise, ``inner`` clockwise; ``grain`` (2, 2) along the warp; ``axes``: the stretches
     (2, 2) of the warp and weft through the origin that lie on the piece; ``seams`` the same of the middles of its
     overlaps. ``seed`` (2,) is where the origin lies, NaN where on another piece: strips of a roll are moved apart.
+    ``strip_of``: name of the pattern that the piece is cut from in strips, else empty.
     """
 
     name: str
@@ -59,6 +60,7 @@ class Piece:
     axes: tuple[Floats, ...]
     seams: tuple[Floats, ...]
     seed: Floats
+    strip_of: str = ""
 
 
 def cut_pieces(result: Drape) -> tuple[Piece, ...]:
@@ -72,8 +74,14 @@ def cut_pieces(result: Drape) -> tuple[Piece, ...]:
     for number, strip in enumerate(roll.strips, start=1):
         inside = levels[(levels > strip.v[0]) & (levels < strip.v[1])]
         shift = np.array([0.0, (number - 1) * (roll.overlap + APART_STRIPS)])
-        pieces += [moved(piece, shift) for piece in pieces_of(strip.contours, f"{stem}-STRIP{number}", inside)]
+        own = pieces_of(strip.contours, f"{stem}-STRIP{number}", inside)
+        pieces += [replace(moved(piece, shift), strip_of=stem) for piece in own]
     return tuple(pieces)
+
+
+def style_name(pieces: Sequence[Piece]) -> str:
+    """The name of the pattern that the pieces are of."""
+    return (pieces[0].strip_of or pieces[0].name) if pieces else "EMPTY"
 
 
 def pieces_of(contours: Sequence[Floats], stem: str, seams: Floats = NO_LEVELS) -> tuple[Piece, ...]:
@@ -103,8 +111,8 @@ def pieces_of(contours: Sequence[Floats], stem: str, seams: Floats = NO_LEVELS) 
 def moved(piece: Piece, shift: Floats) -> Piece:
     """The piece of a strip moved by (2,) mm; the seed goes with the strips whose piece it lies on."""
     on = winding(piece.outer, piece.seed) != 0
-    return Piece(
-        name=piece.name,
+    return replace(
+        piece,
         outer=piece.outer + shift,
         inner=tuple(ring + shift for ring in piece.inner),
         grain=piece.grain + shift,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geomdrap.export import palette
 from geomdrap.export.camera import Camera, extent, two_views
-from geomdrap.export.drawing import roll_words, round_length
+from geomdrap.export.drawing import round_length
 from geomdrap.export.flat_map import draw_flat_map, draw_rosette, pattern_extent, seams_of
 from geomdrap.export.layout import Box, Panel, best_page
 from geomdrap.export.legend import draw_footer, draw_header, footer_height
@@ -144,8 +144,8 @@ def draw_pattern(figure: Any, box: Box, result: Drape) -> None:
     for side in axes.spines.values():
         side.set_color(palette.BARE_STRIPE)
     words = f"Flat pattern, {size[0]:.4g} × {size[1]:.4g} mm"
-    if result.roll is not None:
-        words += ", " + roll_words(result.roll)
+    if seams_of(result):
+        words += f", {len(seams_of(result)) + 1} strips"
     caption(figure, box, words)
 
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from geomdrap import __version__
 from geomdrap.export import palette
+from geomdrap.export.flat_map import seams_of
 from geomdrap.export.ply_corners import Box
 from geomdrap.export.report_json import plain
 from geomdrap.export.report_mesh import ReportMesh, report_mesh
@@ -88,7 +89,9 @@ def description(result: Drape, mesh: ReportMesh) -> dict[str, Any]:
     from geomdrap.fishnet import Status
 
     net = result.net
+    seams = [piece for seam in seams_of(result) for piece in seam.pieces]
     return {
+        **({"seams": line_path(seams)} if seams else {}),
         "space": box(mesh.space),
         "fabric": box(mesh.fabric),
         "pitch": net.pitch,
@@ -126,5 +129,10 @@ def normal_near(result: Drape, point: np.ndarray) -> np.ndarray:
 
 def contour_path(polygons: Sequence[np.ndarray]) -> str:
     """Closed polygons (k, 2) mm as the data of one SVG path."""
-    rounded = [np.round(polygon, PLACES) + 0.0 for polygon in polygons]
-    return "".join("M" + "L".join(f"{x:.6g},{y:.6g}" for x, y in polygon.tolist()) + "Z" for polygon in rounded)
+    return "".join(line_path([polygon]) + "Z" for polygon in polygons)
+
+
+def line_path(lines: Sequence[np.ndarray]) -> str:
+    """Lines (k, 2) mm as the data of one SVG path."""
+    rounded = [np.round(line, PLACES) + 0.0 for line in lines]
+    return "".join("M" + "L".join(f"{x:.6g},{y:.6g}" for x, y in line.tolist()) for line in rounded)

@@ -128,8 +128,8 @@ def check_roll(width: float, overlap: float, pitch: float) -> None:
         )
     if width - overlap < pitch:
         raise DrapeError(
-            f"an overlap of {overlap:g} mm leaves less of a roll {width:g} mm wide than the pitch of {pitch:g} mm: give "
-            "a smaller overlap"
+            f"an overlap of {overlap:g} mm leaves less of a roll {width:g} mm wide than the pitch of {pitch:g} mm: "
+            "give a smaller overlap"
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ TOGETHER = 1e-3
 
 class FabricFacets(NamedTuple):
     """Draped facets in the order of their lowest corner: ``at`` (m, 3, 2) mm in the fabric, ``points`` (m, 3, 3) mm
-    on the part, ``shear`` (m,) degrees, signed; ``low`` (m,), ``tallest``: lowest corner, greatest height, mm along v.
+    on the part, ``shear`` (m,) degrees, signed; ``low`` (m,) and ``tallest``: lowest corner, largest height, mm in v.
     """
 
     at: np.ndarray
@@ -96,5 +97,5 @@ def polylines(line: Stretches, pitch: float) -> tuple[np.ndarray, ...]:
     starts = np.concatenate([[0], np.flatnonzero(gap) + 1, [len(gap) + 1]])
     return tuple(
         np.vstack([line.points[a:b, 0], line.points[b - 1 : b, 1]])
-        for a, b in zip(starts[:-1], starts[1:], strict=True)
+        for a, b in pairwise(starts.tolist())
     )

@@ -33,8 +33,8 @@ def strips_needed(height: float, width: float, overlap: float) -> int:
     needed = max(1, math.ceil((height - overlap) / (width - overlap) - 1e-9))
     if needed > MOST:
         raise DrapeError(
-            f"the flat pattern, {height:.4g} mm along the weft, takes {needed} strips of a roll {width:g} mm wide, more "
-            f"than the {MOST} that can be laid: --roll-width is in mm"
+            f"the flat pattern, {height:.4g} mm along the weft, takes {needed} strips of a roll {width:g} mm wide, "
+            f"more than the {MOST} that can be laid: --roll-width is in mm"
         )
     return needed
 
