@@ -93,7 +93,7 @@ def draw_pieces(axes: Any, pieces: Sequence[Piece], shift: Floats, frame: Any) -
             draw(axes, line + shift, frame, color=palette.FAINT, lw=0.15 * POINT, ls=(0, (8, 3, 1, 3)))
         for line in piece.seams:
             draw(axes, line + shift, frame, color=palette.SEAM, lw=0.25 * POINT, ls=(0, (4, 3)))
-        draw_grain(axes, piece.grain + shift, frame)
+        draw_grain(axes, piece.grain + shift, frame, f"{piece.name}: " if piece.strip_of else "")
     seed = {"marker": "o", "ms": 3.0 * POINT, "mfc": "none", "mec": palette.INK, "mew": 0.2 * POINT}
     for place in sorted({tuple(piece.seed.tolist()) for piece in pieces if np.isfinite(piece.seed).all()}):
         draw(axes, np.array([place]) + shift, frame, **seed)
@@ -111,13 +111,14 @@ def draw(axes: Any, points: Floats, frame: Any, **style: Any) -> None:
     line.set_clip_path(frame)
 
 
-def draw_grain(axes: Any, grain: Floats, frame: Any) -> None:
-    """The grain line with a head at its end towards +u, and its name."""
+def draw_grain(axes: Any, grain: Floats, frame: Any, name: str) -> None:
+    """The grain line with a head at its end towards +u, and what it is, after the name of a strip."""
     (left, y), (right, _) = grain
     head = np.array([[right - ARROW, y + 0.35 * ARROW], [right, y], [right - ARROW, y - 0.35 * ARROW]])
     for points in (grain, head):
         draw(axes, points, frame, color=palette.LOW, lw=0.25 * POINT)
-    words = axes.text(0.5 * (left + right), y + 1.5, "warp (grain line)", fontsize=9, color=palette.LOW, ha="center")
+    text = f"{name}warp (grain line)"
+    words = axes.text(0.5 * (left + right), y + 1.5, text, fontsize=9, color=palette.LOW, ha="center")
     words.set_clip_on(True)
     words.set_clip_path(frame)
 
@@ -142,6 +143,7 @@ def overview(result: Drape, pieces: tuple[Piece, ...], pages: Tiling, paper: str
         f"{Path(result.net.surface.source).name}: flat pattern in true scale on {many} (this overview is not)",
         f"pages overlap by {OVERLAP:g} mm: lay the red crosses on each other",
         "double notch: the end of the warp towards +u; circle: the seed",
+        *(["dashed green line: seam, the middle of the overlap"] if any(piece.seams for piece in pieces) else []),
         *(line for line in note_words(result)[1:] if not line.startswith("LOCKED")),
     ]
     for k, line in enumerate(words):

@@ -24,6 +24,8 @@ APART = 8.0
 """Between the two notches of a double one, along the contour, mm."""
 APART_STRIPS = 20.0
 """Between strips of a roll, mm."""
+OFF_SEAM = 0.6
+"""Share of the height of a strip in which its grain line lies: at a seam its name would be on the next strip."""
 NO_LEVELS = np.zeros(0)
 GRAIN = 0.6
 """Length of the grain line, as a share of the longest yarn that it can lie on."""
@@ -74,7 +76,7 @@ def cut_pieces(result: Drape) -> tuple[Piece, ...]:
     for number, strip in enumerate(roll.strips, start=1):
         inside = levels[(levels > strip.v[0]) & (levels < strip.v[1])]
         shift = np.array([0.0, (number - 1) * (roll.overlap + APART_STRIPS)])
-        own = pieces_of(strip.contours, f"{stem}-STRIP{number}", inside)
+        own = pieces_of(strip.contours, f"{stem}-STRIP{number}", inside, OFF_SEAM)
         pieces += [replace(moved(piece, shift), strip_of=stem) for piece in own]
     return tuple(pieces)
 
@@ -84,8 +86,13 @@ def style_name(pieces: Sequence[Piece]) -> str:
     return (pieces[0].strip_of or pieces[0].name) if pieces else "EMPTY"
 
 
-def pieces_of(contours: Sequence[Floats], stem: str, seams: Floats = NO_LEVELS) -> tuple[Piece, ...]:
-    """The pieces that contours (k, 2) enclose, the largest first; ``seams`` are levels (n,) to mark, mm along v."""
+def pieces_of(
+    contours: Sequence[Floats], stem: str, seams: Floats = NO_LEVELS, grain_within: float = 1.0
+) -> tuple[Piece, ...]:
+    """The pieces that contours (k, 2) enclose, the largest first.
+
+    ``seams`` are levels (n,) to mark, mm along v; for ``grain_within`` see ``grain_line``.
+    """
     ordered = sorted((ring for ring in contours if signed_area(ring) > 0.0), key=lambda ring: -signed_area(ring))
     holes = [ring for ring in contours if signed_area(ring) < 0.0]
     pieces = []
@@ -98,7 +105,7 @@ def pieces_of(contours: Sequence[Floats], stem: str, seams: Floats = NO_LEVELS) 
                 name=stem if len(ordered) == 1 else f"{stem}-{number}",
                 outer=outer,
                 inner=inner,
-                grain=grain_line(own),
+                grain=grain_line(own, grain_within),
                 notches=notches(outer),
                 axes=(*yarn_lines(own, zero, 1), *yarn_lines(own, zero, 0)),
                 seams=yarn_lines(own, seams, 1),
@@ -129,9 +136,14 @@ def piece_name(source: str) -> str:
     return "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "_" for c in stem) or "PIECE"
 
 
-def grain_line(contours: tuple[Floats, ...]) -> Floats:
-    """A line (2, 2) along the warp in the middle of the longest stretch of warp that lies on the piece."""
+def grain_line(contours: tuple[Floats, ...], inner: float = 1.0) -> Floats:
+    """A line (2, 2) along the warp in the middle of the longest stretch of warp that lies on the piece.
+
+    Only warps in the ``inner`` share of the piece's height are looked at.
+    """
     low, high = contours[0][:, 1].min(), contours[0][:, 1].max()
+    rim = 0.5 * (1.0 - inner) * (high - low)
+    low, high = low + rim, high - rim
     levels = low + (high - low) * ((np.arange(LEVELS) + 0.5) / LEVELS + OFF_LEVEL)
     lines = yarn_lines(contours, levels, 1)
     longest = max(lines, key=lambda line: line[1, 0] - line[0, 0])

@@ -49,7 +49,7 @@ def chains_below(ring: np.ndarray, over: np.ndarray, level: float) -> list[np.nd
     ups = np.roll(ups, -int(np.searchsorted(ups, downs[0])))  # the way up after each way down
     return [
         np.vstack([crossing(ring, down, level), ring[between(down, up, len(ring))], crossing(ring, up, level)])
-        for down, up in zip(downs, ups, strict=True)
+        for down, up in zip(downs.tolist(), ups.tolist(), strict=True)
     ]
 
 
