@@ -16,7 +16,7 @@ from geomdrap.blind.terms import Array
 from geomdrap.blind.tools import Tool
 from geomdrap.errors import GeomdrapError
 
-AGREE_MM, AGREE_DEG = 0.3, 0.6  # between nets of two finenesses: the finer one errs by a third of it
+AGREE_MM, AGREE_DEG = 0.3, 0.6  # between nets of two finenesses: where both are smooth, the finer errs by a third
 CONTINUED = 1.3  # of the tool's size: how far yarns that slip are followed beyond its rim
 QUADRANTS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
 
@@ -62,8 +62,8 @@ def _pinned(tool: Tool, sheet: Sheet, recipe: Recipe, side: float) -> Array:
 def _slid(tool: Tool, sheet: Sheet, recipe: Recipe, side: float) -> Array:
     """Plan points (n, n, 2) of the net whose crossings slip, where it is smooth enough for nodes ``side`` apart.
 
-    Behind a hump yarns that keep their distance meet at an angle. What nets of two finenesses do not agree on is
-    left out: it has such a kink in it.
+    Behind a hump yarns that keep their distance meet at an angle. Nodes of the coarser of two nets on which the
+    finer does not agree are left out: there is such a kink. Nodes between those have nothing to agree with, and stay.
     """
     from geomdrap.blind.sliding import grow_sliding
 

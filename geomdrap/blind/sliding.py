@@ -89,9 +89,12 @@ def _solve(sheet: Sheet, q: Array, row: Array, warp: Array, weft: Array, slip: f
         p, px, py = sheet(row)
         error, blocks, sine = _equations(p, q, warp, weft, slip)
         tangents = np.stack([px, py], axis=2)
+        matrix = _banded(blocks, tangents)
+        if not (np.isfinite(matrix).all() and np.isfinite(error).all()):
+            break
         try:
-            step = solve_banded((BAND, BAND), _banded(blocks, tangents), error.ravel()).reshape(-1, 2)
-        except (LinAlgError, ValueError):
+            step = solve_banded((BAND, BAND), matrix, error.ravel(), check_finite=False).reshape(-1, 2)
+        except LinAlgError:
             break
         if not np.isfinite(step).all():
             break

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +10,7 @@ import click
 from click.core import ParameterSource
 
 from geomdrap.cli.elements import fe_mesh_of, notes_on, ply_on
+from geomdrap.cli.folders import check_folder
 from geomdrap.cli.lazy import COMMAND
 from geomdrap.cli.options import (
     cloth_options,
@@ -26,18 +26,21 @@ from geomdrap.cli.options import (
     roll_options,
     seed_options,
 )
+from geomdrap.cli.roll import check_roll, on_roll
+from geomdrap.cli.values import NamedPath, Numbers
 
 if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
     from geomdrap.fields import Drape
 
+GUIDES = ("warp_guide", "weft_guide")
 THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
 
 
 @click.command()
 @part_argument
 @seed_options
-@cloth_options
+@cloth_options("from the part's size, without --plies halved while the checks call it coarse, and said")
 @effect_options
 @cut_option
 @reading_options
@@ -45,18 +48,19 @@ THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
 @outputs_option
 @click.option(
     "--warp-guide",
-    type=click.Path(path_type=Path),
+    type=NamedPath(),
     metavar="FILE.csv",
     help="Curve on the part (columns x, y, z) that the warp through the origin follows, in place of --angle.",
 )
 @click.option(
     "--weft-guide",
-    type=click.Path(path_type=Path),
+    type=NamedPath(),
     metavar="FILE.csv",
     help="The same for the weft; with both the ply is laid from where they cross.",
 )
 @click.option(
     "--plies",
+    type=Numbers(),
     metavar="DEG,DEG,...",
     help="A stack instead of one ply: angles from --angle, the tool's side first, each ply draped on those below it.",
 )
@@ -75,7 +79,7 @@ THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
 def drape(
     folder: Path,
     outputs: tuple[str, ...],
-    plies: str | None,
+    plies: tuple[float, ...] | None,
     onto: Path | None,
     fe_axis: tuple[float, float, float] | None,
     ply_thickness: float | None,
@@ -88,7 +92,8 @@ def drape(
     """Drape PART: net, shear map, flat pattern, statistics.
 
     PART is a mesh (STL, OBJ, PLY, OFF, GLB, VTU, Gmsh, Abaqus, Nastran) or, with the cad extra, STEP or
-    IGES. All result files are written at the end, together: a run that fails leaves earlier ones untouched.
+    IGES. All result files, with --plies those of each ply, are written at the end, together: a run that fails before
+    that leaves earlier ones untouched.
 
     \b
     Examples:
@@ -103,17 +108,17 @@ def drape(
       geomdrap drape hood.stl --angle 45 --roll-width 600 --seam-overlap 20
       geomdrap drape hood.stl --angle 45 --onto hood_fe.inp --ply-thickness 0.3
     """
-    from geomdrap.cli.messages import print_json, say
+    from geomdrap.cli.messages import of_an_earlier_run, print_json, say
     from geomdrap.cli.progress import Progress, announce_compilation
     from geomdrap.cli.summary import summary
-    from geomdrap.export.outputs import Extras, write_all
+    from geomdrap.export.outputs import Extras, left_over, write_all
     from geomdrap.export.report_json import as_dict, is_incomplete
 
-    _check_folder(folder, outputs)
+    check_folder(folder, outputs)
     context = click.get_current_context()
     if context.get_parameter_source("angle") == ParameterSource.COMMANDLINE:
         _refuse_guides(asked, "--angle")
-    _check_roll(asked, plies)
+    check_roll(asked["roll_width"], asked["seam_overlap"])
     if plies is not None:
         from geomdrap.cli.plies import drape_plies
 
@@ -121,7 +126,8 @@ def drape(
         if onto is not None or fe_axis is not None:
             raise click.UsageError("--onto and --fe-axis take one ply: leave --plies out", context)
         extras = Extras(context.meta.get(COMMAND, ""), None, ply_thickness or THICKNESS, paper)
-        return drape_plies(plies, extras, folder, outputs, strict, as_json, quiet, **asked)
+        laid = {name: value for name, value in asked.items() if name not in GUIDES}
+        return drape_plies(plies, extras, folder, outputs, strict, as_json, quiet, **laid)
     mesh, outputs = fe_mesh_of(onto, outputs)
     with Progress(quiet) as progress:
         result = compute(progress, lambda: announce_compilation(quiet), **asked)
@@ -129,57 +135,23 @@ def drape(
         command = click.get_current_context().meta.get(COMMAND, "")
         elements = ply_on(result, mesh, fe_axis, outputs)
         files = write_all(result, folder, outputs, progress.share, Extras(command, elements, ply_thickness, paper))
-    left = tuple(_left_over(folder, files))
-    say((*result.warnings, *notes_on(elements, outputs), *left), result.net.notes, quiet)
+    left = of_an_earlier_run(left_over(folder, files.values()) if files else [], folder)
+    more = (*notes_on(elements, outputs), *left)
+    say((*result.warnings, *more), result.net.notes, quiet)
     if as_json:
         document = as_dict(result, files)
-        print_json({**document, "warnings": [*document["warnings"], *left]})
+        print_json({**document, "warnings": [*document["warnings"], *more]})
     elif not quiet:
         click.echo(summary(result, files))
     return int(strict and is_incomplete(result))
 
 
-def _check_folder(folder: Path, outputs: tuple[str, ...]) -> None:
-    """Refuse, before anything is computed, a folder that cannot be written or that nothing would go to."""
-    from geomdrap.export.whole import check_writable
-
-    if outputs:
-        check_writable(folder)
-    elif click.get_current_context().get_parameter_source("folder") == ParameterSource.COMMANDLINE:
-        raise click.UsageError(
-            "-o names a folder, but --outputs none writes no files: leave out one", click.get_current_context()
-        )
-
-
-def _left_over(folder: Path, files: Mapping[str, Path]) -> Iterator[str]:
-    """Warn of a folder that holds files of two runs."""
-    from geomdrap.export.outputs import left_over
-
-    names = left_over(folder, files.values()) if files else []
-    if names:
-        verb, them = ("is", "it") if len(names) == 1 else ("are", "them")
-        yield f"{', '.join(names)} in {folder} {verb} of an earlier run: remove {them}, or use another folder (-o)"
-
-
-def _refuse_guides(asked: dict[str, Any], other: str) -> None:
-    """Refuse guide curves beside an option that says something else; without that they are taken away."""
-    for name in ("warp_guide", "weft_guide"):
+def _refuse_guides(asked: Mapping[str, Any], other: str) -> None:
+    """Refuse guide curves beside an option that says something else."""
+    for name in GUIDES:
         if asked[name] is not None:
             option = "--" + name.replace("_", "-")
             raise click.UsageError(f"{option} and {other} contradict each other", click.get_current_context())
-        if other == "--plies":
-            del asked[name]
-
-
-def _check_roll(asked: dict[str, Any], plies: str | None) -> None:
-    """Refuse an overlap without a roll, and a roll for a stack of plies; for a stack its options are taken away."""
-    context = click.get_current_context()
-    if asked["seam_overlap"] is not None and asked["roll_width"] is None:
-        raise click.UsageError("--seam-overlap is of strips of a roll: give --roll-width, too", context)
-    if plies is not None:
-        if asked["roll_width"] is not None:
-            raise click.UsageError("--roll-width takes one ply: leave --plies out", context)
-        del asked["roll_width"], asked["seam_overlap"]
 
 
 def read_guides(**files: Path | None) -> dict[str, Any]:
@@ -233,8 +205,4 @@ def compute(
         return result
 
     draped = at(asked) if asked is not None else finer_where_coarse(at(None), at)
-    if roll_width is None:
-        return draped
-    from geomdrap.fields.roll import lay_on_roll
-
-    return replace(draped, roll=lay_on_roll(draped, roll_width, seam_overlap or 0.0))
+    return on_roll(draped, roll_width, seam_overlap)

@@ -71,7 +71,8 @@ def setup_options(function: F) -> F:
         click.option(
             "--sigma-direction",
             type=Number("DEG", above=0.0),
-            help="Standard deviation of measured fibre directions, degrees.  [default: from the data]",
+            help="Standard deviation of measured fibre directions, degrees.  [default: from the data, "
+            "at last from that of the shear]",
         ),
         click.option(
             "--sigma-shear",

@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from geomdrap.cli.lazy import COMMAND
 from geomdrap.cli.options import (
     cloth_options,
     cut_option,
@@ -26,7 +27,7 @@ from geomdrap.cli.values import Names
 @click.option(
     "--angles",
     metavar="START:STOP:STEP,...",
-    help="Headings from which the search begins.  [default: 0:75:15, with effects 0:165:15]",
+    help="Headings from which the search begins.  [default: 0:75:15; 0:165:15 with effects or an oblong --blank]",
 )
 @click.option(
     "--origins",
@@ -43,7 +44,7 @@ from geomdrap.cli.values import Names
     help="Most drapes of the search, after those from which it begins.",
 )
 @lay_options
-@cloth_options
+@cloth_options()
 @effect_options
 @objective_option
 @place_options
@@ -85,19 +86,21 @@ def optimize(
       geomdrap optimize hood.stl --origins centroid --angles 0:170:10 --budget 100 --json
     """
     import geomdrap as gd
+    from geomdrap.cli.folders import check_folder
     from geomdrap.cli.messages import print_json, say
     from geomdrap.cli.optimize_summary import summary
     from geomdrap.cli.progress import Progress
-    from geomdrap.cli.sweeping import check_folder, prepare, recorded
+    from geomdrap.cli.sweeping import prepare, recorded
     from geomdrap.export.optimize_json import as_dict
     from geomdrap.export.sweep_outputs import write_optimum
+    from geomdrap.sweep.optimize import first_headings
 
-    check_folder(folder, outputs)
+    check_folder(folder, outputs, resume)
     headings = gd.sweep.parse_angles(angles) if angles is not None else None
     with Progress(quiet) as progress:
         ready = prepare(progress, quiet, **asked)
         job = ready.job
-        headings = headings or gd.sweep.parse_angles("0:165:15" if job.effects else "0:75:15")
+        headings = headings or first_headings(job)
         places, notes = gd.sweep.locate_origins(
             job.surface, origins or ("centroid", "grid:5x5"), job.pitch, ready.project
         )
@@ -108,13 +111,15 @@ def optimize(
                 job, cases, ready.objective, budget=budget,
                 pool=running.pool, done=running.earlier, on_row=running.take,
             )  # fmt: skip
-        progress.step("Draping the best")
-        best = result.sweep.draped_best()
-        progress.step("Writing")
-        files = write_optimum(result, best, folder, outputs, progress.share)
+            running.take.finish()
+            progress.step("Draping the best")
+            best = result.sweep.draped_best()
+            progress.step("Writing")
+            command = click.get_current_context().meta.get(COMMAND, "")
+            files = write_optimum(result, best, folder, outputs, progress.share, notes, command)
     say(best.warnings, (*notes, *best.net.notes), quiet)
     if as_json:
-        print_json(as_dict(result, files))
+        print_json(as_dict(result, best, files, notes))
     elif not quiet:
         click.echo(summary(result, files))
     return 0

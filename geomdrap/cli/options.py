@@ -94,29 +94,33 @@ def seed_options(function: F) -> F:
     return function
 
 
-def cloth_options(function: F) -> F:
-    """Add the fabric's numbers: --pitch, --blank, --limit-angle."""
-    for option in (
-        click.option(
-            "--limit-angle",
-            type=Number("DEG", above=0.0, below=90.0),
-            help="Shear beyond which maps turn red and statistics count it.  [default: the fabric's]",
-        ),
-        click.option(
-            "--blank",
-            type=Size(),
-            metavar="WxH",
-            help="Size of the blank in mm, along warp times along weft, its middle on the origin.  "
-            "[default: as large as the part needs]",
-        ),
-        click.option(
-            "--pitch",
-            type=Number("MM", above=0.0),
-            help="Side of a cell of the net, mm.  [default: from the part's size, and said]",
-        ),
-    ):
-        function = option(function)
-    return function
+def cloth_options(chosen: str = "from the part's size, once for all drapes, and said") -> Callable[[F], F]:
+    """Add the fabric's numbers: --pitch, --blank, --limit-angle; ``chosen``: the pitch if none is given, in words."""
+
+    def add(function: F) -> F:
+        for option in (
+            click.option(
+                "--limit-angle",
+                type=Number("DEG", above=0.0, below=90.0),
+                help="Shear beyond which maps turn red and statistics count it.  [default: the fabric's]",
+            ),
+            click.option(
+                "--blank",
+                type=Size(),
+                metavar="WxH",
+                help="Size of the blank in mm, along warp times along weft, its middle on the origin.  "
+                "[default: as large as the part needs]",
+            ),
+            click.option(
+                "--pitch",
+                type=Number("MM", above=0.0),
+                help=f"Side of a cell of the net, mm.  [default: {chosen}]",
+            ),
+        ):
+            function = option(function)
+        return function
+
+    return add
 
 
 def plugin_option(function: F) -> F:
@@ -205,7 +209,8 @@ def element_options(function: F) -> F:
         click.option(
             "--ply-thickness",
             type=Number("MM", above=0.0),
-            help="Thickness of the flat fabric, for decks with thicknesses.  [default: factors only]",
+            help="Thickness of the flat fabric, for decks with thicknesses.  [default: factors only; "
+            "with --plies 0.25]",
         ),
         click.option(
             "--fe-axis",

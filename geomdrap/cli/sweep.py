@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from geomdrap.cli.lazy import COMMAND
 from geomdrap.cli.options import (
     cloth_options,
     cut_option,
@@ -38,7 +39,7 @@ from geomdrap.cli.values import Names
     "normal; a file has columns x, y, z in mm.  [default: centroid]",
 )
 @lay_options
-@cloth_options
+@cloth_options()
 @effect_options
 @objective_option
 @click.option(
@@ -87,16 +88,17 @@ def sweep(
       geomdrap sweep hood.stl --origins seeds.csv --effect slip:coefficient=0.6 --resume
       geomdrap sweep hood.stl --origins grid:20x20 --scheduler tcp://10.0.0.5:8786 --json
     """
+    from geomdrap.cli.folders import check_folder
     from geomdrap.cli.messages import print_json, say
     from geomdrap.cli.progress import Progress
     from geomdrap.cli.sweep_summary import summary
-    from geomdrap.cli.sweeping import check_folder, prepare, recorded
+    from geomdrap.cli.sweeping import prepare, recorded
     from geomdrap.export.sweep_json import as_dict
     from geomdrap.export.sweep_outputs import write_sweep
     from geomdrap.sweep import cases_of, locate_origins, parse_angles, run
     from geomdrap.sweep.objective import parse_criteria
 
-    check_folder(folder, outputs)
+    check_folder(folder, outputs, resume)
     headings, criteria = parse_angles(angles), parse_criteria(pareto)
     with Progress(quiet) as progress:
         ready = prepare(progress, quiet, **asked)
@@ -108,13 +110,15 @@ def sweep(
                 ready.job, cases, ready.objective, criteria=criteria,
                 pool=running.pool, done=running.earlier, on_row=running.take,
             )  # fmt: skip
-        progress.step("Draping the best")
-        best = result.draped_best()
-        progress.step("Writing")
-        files = write_sweep(result, best, folder, outputs, progress.share)
+            running.take.finish()
+            progress.step("Draping the best")
+            best = result.draped_best()
+            progress.step("Writing")
+            command = click.get_current_context().meta.get(COMMAND, "")
+            files = write_sweep(result, best, folder, outputs, progress.share, notes, command)
     say(best.warnings, (*notes, *best.net.notes), quiet)
     if as_json:
-        print_json(as_dict(result, files))
+        print_json(as_dict(result, best, files, notes))
     elif not quiet:
         click.echo(summary(result, files))
     return 0

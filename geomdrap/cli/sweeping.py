@@ -17,9 +17,12 @@ if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
     from geomdrap.sweep import Job, Row
     from geomdrap.sweep.case import Case
+    from geomdrap.sweep.pool import Pool
     from geomdrap.sweep.record import Record
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+RESUME = "Go on with the rows that the folder holds already; without it they are set aside as rows-1.jsonl."
 
 SWEEP_OUTPUTS = ("json", "csv", "png", "best")  # the keys of export.sweep_outputs.SWEEP_OUTPUTS; a test compares
 
@@ -57,7 +60,7 @@ def objective_option(function: F) -> F:
 
 def resume_option(function: F) -> F:
     """Add --resume."""
-    return click.option("--resume", is_flag=True, help="Go on with the rows that the folder holds already.")(function)
+    return click.option("--resume", is_flag=True, help=RESUME)(function)
 
 
 def place_options(function: F) -> F:
@@ -89,23 +92,16 @@ class Prepared(NamedTuple):
     jobs: int
     scheduler: str | None
 
-    @contextmanager
-    def pool(self, cases: int) -> Iterator[Any]:
-        """The place where so many cases run."""
+    def pool(self, cases: int) -> Pool:
+        """The place where so many cases run; what runs them closes it."""
         from geomdrap.sweep.pool import LocalPool, ThroughExecutor
 
-        jobs = min(self.jobs, cases)
-        pool: Any
         if self.scheduler:
             from geomdrap.sweep.cluster import ClusterPool
 
-            pool = ClusterPool(self.job, self.scheduler)
-        else:
-            pool = LocalPool(self.job, jobs) if jobs > 1 else ThroughExecutor(self.job)
-        try:
-            yield pool
-        finally:
-            pool.close()
+            return ClusterPool(self.job, self.scheduler)
+        jobs = min(self.jobs, cases)
+        return LocalPool(self.job, jobs) if jobs > 1 else ThroughExecutor(self.job)
 
 
 def prepare(
@@ -132,6 +128,7 @@ def prepare(
     """Read what the options name, and refuse what of them is wrong before anything is draped."""
     from geomdrap.cli.acting import effects_of
     from geomdrap.cli.part import read_part
+    from geomdrap.cli.pitch import require_room
     from geomdrap.cli.progress import announce_compilation
     from geomdrap.sweep import Job, Objective
 
@@ -140,6 +137,8 @@ def prepare(
     progress.step("Reading")
     surface = read_part(part, unit, tolerance, flip, cuts)
     surface.require_drapable()
+    if pitch is not None:
+        require_room(surface, pitch)
     announce_compilation(quiet)
     reach = (blank[0] / 2, blank[1] / 2) if blank else None
     job = Job(surface, pitch, reach, limit_angle, effects, reference)
@@ -149,7 +148,7 @@ def prepare(
 class Running(NamedTuple):
     """A run: where its cases are draped, the rows that there are, and what takes new ones."""
 
-    pool: Any
+    pool: Pool
     earlier: tuple[Row, ...]
     take: Counter
 
@@ -164,16 +163,33 @@ def recorded(
     earlier = read_record(folder / FILE, ready.job) if folder and resume else ()
     known = {row.key for row in earlier}
     done = sum((case.origin, case.angle) in known for case in cases)
-    with ready.pool(len(cases) - done + more) as pool:
+    pool = ready.pool(len(cases) - done + more)
+    try:
+        if folder and not resume:
+            _set_aside(folder / FILE)
         record = Record(folder / FILE, ready.job, earlier) if folder else None
-        count = Counter(progress, len(cases) + more, done, record, "at most " if more else "")
-        try:
-            yield Running(pool, earlier, count)
-        except KeyboardInterrupt:
-            raise KeyboardInterrupt(count.interrupted()) from None
-        finally:
-            if record:
-                record.close()
+    except BaseException:
+        pool.close()  # nothing will run on it
+        raise
+    count = Counter(progress, len(cases) + more, done, record, "at most " if more else "")
+    try:
+        yield Running(pool, earlier, count)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(count.interrupted()) from None
+    finally:
+        if record:
+            record.close()
+
+
+def _set_aside(path: Path) -> None:
+    """Keep rows that may have taken hours under another name, and say so."""
+    from geomdrap.cli.messages import say
+    from geomdrap.sweep.record import set_aside
+
+    kept = set_aside(path)
+    if kept is not None:
+        what = "(to go on with them use --resume; remove them if nobody needs them)"
+        say([f"{path} held rows of an earlier run, which are kept in {kept} {what}"], (), quiet=True)
 
 
 class Counter:
@@ -182,6 +198,7 @@ class Counter:
     def __init__(self, progress: Progress, total: int, done: int, record: Record | None, at_most: str = ""):
         self.progress, self.total, self.done, self.record, self.at_most = progress, total, done, record, at_most
         self.before, self.start = done, time.monotonic()
+        self.finished = False
 
     def __call__(self, row: Row) -> None:
         """Take a row."""
@@ -192,11 +209,18 @@ class Counter:
         left = duration(each * (self.total - self.done))
         self.progress.share(self.done / self.total, f"{self.done} of {self.total} cases, {self.at_most}{left} left")
 
+    def finish(self) -> None:
+        """All rows are there; what is left is to drape the best again and to write."""
+        self.finished = True
+
     def interrupted(self) -> str:
         """What there is after Ctrl-C."""
+        of = f"all {self.done}" if self.finished else f"{self.done} of {self.at_most}{self.total}"
         if self.record is None:
-            return f"interrupted after {self.done} of {self.total} cases; nothing was written"
-        there = f"{self.done} of {self.total} rows are in {self.record.path}"
+            return f"interrupted after {of} cases; nothing was written"
+        there = f"{of} rows are in {self.record.path}"
+        if self.finished:
+            there = f"{there}, but not all other files are written"
         return f"interrupted; {there}; the same command with --resume goes on from there"
 
 
@@ -211,11 +235,3 @@ def cores() -> int:
     """Cores that this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)
     return len(affinity(0)) if affinity else os.cpu_count() or 1
-
-
-def check_folder(folder: Path, outputs: tuple[str, ...]) -> None:
-    """Refuse, before anything is computed, a folder that cannot be written."""
-    from geomdrap.export.whole import check_writable
-
-    if outputs:
-        check_writable(folder)

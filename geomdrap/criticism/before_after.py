@@ -29,9 +29,8 @@ def placed(diagnosis: Diagnosis) -> Comparison:
 
 def _compared(diagnosis: Diagnosis, effects: Sequence[Effect]) -> Comparison:
     experiment = diagnosis.experiment
-    sigma_xyz, sigma_shear = (None if s is None else float(s[0]) for s in experiment.noise_by_kind())
     net = experiment.draped(effects, experiment.pitches[1])
-    return compare_net(net, experiment.measurement, sigma_xyz=sigma_xyz, sigma_shear=sigma_shear)
+    return compare_net(net, experiment.measurement, **experiment.noise_told())
 
 
 def difference(first: Comparison, second: Comparison) -> Comparison:

@@ -14,7 +14,7 @@ from geomdrap.fishnet import drape
 from geomdrap.fishnet.pitch import choose_pitch, coarse_facets
 from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
 from geomdrap.measurement.match import Matched, match
-from geomdrap.measurement.noise import Noise, noise_of, repeats_of
+from geomdrap.measurement.noise import Noise, noise_of, noise_of_directions, repeats_of
 from geomdrap.measurement.outliers import Outlier, find_outliers
 from geomdrap.measurement.plausible import check_labels, require_on_part
 
@@ -50,7 +50,8 @@ def compare(
     ``origin``, ``angle``, ``effects``, ``reference`` and ``project`` as for `drape`; ``pitch`` mm is chosen from the
     part, and so that drawn marks lie on nodes, where it is None. ``sigma_xyz`` (mm, per coordinate),
     ``sigma_shear`` and ``sigma_direction`` (degrees) are the noise of the measurement where it has no columns for
-    it; where they are None too the noise comes from replicates, or from the differences of neighbours.
+    it; where they are None too the noise comes from replicates, or from the differences of neighbours, and that of
+    directions, where these do not say it, from that of the shear.
     Raises MeasurementError where the table cannot belong to the part, SurfaceError and DrapeError as `drape` does.
     """
     warnings = require_on_part(surface, measurement)
@@ -167,7 +168,9 @@ def _noises(
     if known:
         turn = np.hstack(known)
         column = measurement.sigma_direction
-        of_turn, last = noise_of("sigma_direction", column, sigma_direction, turn, group, turn, places)
+        of_turn, last = noise_of_directions(
+            column, sigma_direction, of_shear.typical or sigma_shear, turn, group, places
+        )
         more = (*more, *last)
     return (xyz, of_shear, of_turn), (*said, *more)
 

@@ -1,7 +1,8 @@
 """``diagnose``: which physical effect the model lacks.
 
-Placement first; every effect tried on top of it, fitted together with it; the likeliest kept if it passes every test
-(see ``evidence``); then again on top of that, as long as something is left that needs a cause.
+Placement first; every effect tried on top of it, and fitted together with it where a first look promises something
+(see ``start``); the likeliest kept if it passes every test (see ``evidence``); then once more on top of that, if
+something is left that needs a cause.
 """
 
 from __future__ import annotations
@@ -138,14 +139,15 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
     model, scatter = rounds[0].base, rounds[0].scatter[0]
     if names:
         model, scatter = rounds[len(names) - 1].trial(names[-1])
-    experiment, model = _final(experiment, model, scatter)
+    meant = experiment
+    experiment, model = _final(meant, model, scatter)
     left = left_over(experiment, model, scatter)
     alike = rivals(rounds[len(names) - 1].evidence) if names else ()
     # a plateau that the model found does not foretell is no matter of chance: nothing else makes one
     if _locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):
         names, alike = [LOCKING], (LOCKING,)
-        experiment, model = _final(experiment, *rounds[0].trial(LOCKING))
-        scatter = rounds[0].trial(LOCKING)[1]
+        model, scatter = rounds[0].trial(LOCKING)
+        experiment, model = _final(meant, model, scatter)
         left = left_over(experiment, model, scatter)
     verdict, candidates = _verdict(experiment, model, scatter, names, alike, left, worth_more(rounds[0], model))
     steps = _steps(experiment, rounds, names, model)
@@ -174,7 +176,7 @@ def _final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Exp
     whiten = judge_of(experiment, rows).whiten(scatter) if whole else white(experiment)
     if any(make(name).costly for name in model.model.effects):
         finer = experiment.finer()
-        return finer, refined(finer, whiten, model)
+        return finer, refined(finer, whiten, model, experiment.pitches[1] / finer.pitches[1])
     if scatter.size > 0.0 and whole:
         model = refit(experiment, whiten, model)
     return experiment, with_fresh_slopes(experiment, model)
@@ -198,7 +200,7 @@ def _locks(experiment: Experiment, first: Round) -> bool:
 
 
 def _least_scatter(of: Round) -> Scatter:
-    """The scatter that the likeliest of the models of a round leaves, which is the smallest."""
+    """The smallest scatter that any of the models of a round leaves."""
     return min(of.scatter, key=lambda s: s.size)
 
 
@@ -214,7 +216,9 @@ def _outliers(experiment: Experiment, model: Fitted) -> tuple[Outlier, ...]:
     """Points that stand out from the final model; what stood out of a worse one may be no slip of the instrument."""
     net = experiment.draped(model.model.built(model.values), experiment.pitches[1])
     found = match(net, experiment.measurement)
-    return find_outliers(net, experiment.measurement, found, *experiment.noise_by_kind())
+    n = len(experiment.measurement)
+    noise = [None if sigma is None else np.full(n, sigma) for sigma in experiment.noise_by_kind()[:2]]
+    return find_outliers(net, experiment.measurement, found, *noise)
 
 
 def _verdict(

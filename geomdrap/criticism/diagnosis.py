@@ -39,7 +39,8 @@ class Tried:
 
     ``rms_position`` mm and ``rms_shear`` degrees, None where not measured; ``cv_error``: held out, over the noise.
     ``confounded_with`` lists effects whose signature on these points is nearly the same; ``visible`` holds for each
-    parameter the smallest value that these data would show, None where none would.
+    parameter the smallest value that these data would show, None where none would. ``looked_at_only``: one look
+    promised too little for a fit, and the values are those at which it does nothing.
     """
 
     name: str
@@ -51,6 +52,7 @@ class Tried:
     confounded_with: tuple[str, ...]
     visible: tuple[tuple[str, float | None, str], ...]
     selected: bool
+    looked_at_only: bool = False
 
 
 @dataclass(frozen=True)
@@ -143,6 +145,7 @@ def _tried(t: Tried) -> dict[str, object]:
         "confounded_with": list(t.confounded_with),
         "visible_from": {name: rounded(amount) for name, amount, _ in t.visible},
         "selected": t.selected,
+        "looked_at_only": t.looked_at_only,
     }
 
 

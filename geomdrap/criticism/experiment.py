@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.criticism.kept import kept
 from geomdrap.criticism.smooth import smoothed
 from geomdrap.fishnet import Effect, Net, drape
 from geomdrap.fishnet.effect import in_order, surface_with
@@ -79,10 +80,12 @@ class Experiment:
     def _coarseness(self, effects: Sequence[Effect]) -> np.ndarray:
         """What the fine net gives more than the coarse one (m,)."""
         key = "+".join(map(repr_of, in_order(effects)))
-        if key not in self.coarseness:
+
+        def make() -> np.ndarray:
             fine, coarse = (self._flat(self.draped(effects, pitch)) for pitch in self.pitches)
-            keep(self.coarseness, key, fine - coarse)
-        return self.coarseness[key]
+            return fine - coarse
+
+        return kept(self.coarseness, key, make, KEPT)
 
     def draped(self, effects: Sequence[Effect] = (), pitch: float | None = None) -> Net:
         """The model's net with effects, at the model's own pitch (mm) unless another is given."""
@@ -98,9 +101,7 @@ class Experiment:
         acting = [e for e in effects if e.stage == "surface"]
         others = [e for e in effects if e.stage != "surface"]
         key = "+".join(map(repr_of, in_order(acting)))
-        if key not in self.surfaces:
-            keep(self.surfaces, key, smoothed(surface_with(in_order(acting), self.surface)))
-        return self.surfaces[key], others
+        return kept(self.surfaces, key, lambda: smoothed(surface_with(in_order(acting), self.surface)), KEPT), others
 
     def _flat(self, net: Net) -> np.ndarray:
         return flatten(predicted(net, self.measurement, self.frames, self.channels), self.mask)
@@ -109,18 +110,15 @@ class Experiment:
         """The same experiment with the net for what is costly twice as fine, but no finer than the other one."""
         return replace(self, pitches=(self.pitches[0], max(0.5 * self.pitches[1], self.pitches[0])), coarseness={})
 
-    def without(self, rows: np.ndarray) -> Experiment:
-        """The same experiment without those points (n,) bool."""
-        keep = self.mask & ~rows[:, None]
-        kept = keep.T[self.mask.T]
-        return replace(self, mask=keep, noise=self.noise[kept], measured=self.measured[kept])
-
-    def noise_by_kind(self) -> tuple[np.ndarray | None, np.ndarray | None]:
-        """Typical noise of positions (mm) and of shear (degrees), for every point (n,); None where not measured."""
+    def noise_by_kind(self) -> tuple[float | None, float | None, float | None]:
+        """Typical noise of positions (mm), shear and directions (degrees); None where not measured."""
         channel = np.array(self.channels)[self.channel_of()]
-        typical = [self.noise[channel == name] for name in ("normal", "shear")]
-        n = len(self.measurement)
-        return tuple(np.full(n, np.median(t)) if len(t) else None for t in typical)  # type: ignore[return-value]
+        own = [self.noise[np.isin(channel, names)] for names in (("normal",), ("shear",), ("warp", "weft"))]
+        return tuple(float(np.median(noise)) if len(noise) else None for noise in own)  # type: ignore[return-value]
+
+    def noise_told(self) -> dict[str, float | None]:
+        """The typical noise by the names that it has as an argument, as of ``compare_net``."""
+        return dict(zip(("sigma_xyz", "sigma_shear", "sigma_direction"), self.noise_by_kind(), strict=True))
 
     def channel_of(self) -> np.ndarray:
         """Number of the channel of each value (m,)."""
@@ -134,13 +132,6 @@ class Experiment:
 def repr_of(effect: Effect) -> str:
     """An effect with all digits of its values."""
     return f"{effect.name}{sorted(effect.values.items())}"
-
-
-def keep(kept: dict[str, Any], key: str, value: object) -> None:
-    """Keep a value, and no more than ``KEPT`` of them: the oldest goes."""
-    if len(kept) >= KEPT:
-        kept.pop(next(iter(kept)))
-    kept[key] = value
 
 
 def flatten(table: np.ndarray, mask: np.ndarray) -> np.ndarray:

@@ -8,15 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 
+from geomdrap.criticism.kept import kept
 from geomdrap.criticism.scatter import DEG, Smoothness, radial, scatter_covariance, shifts
 
 RATIO = 1.4  # between neighbouring correlation lengths that are tried
 SIZES = (0.0, 0.3, 0.5, 0.8, 1.3, 2.0, 3.2, 5.0, 8.0, 13.0, 20.0)  # τ over the positions' noise
 TURNING = 2.5  # degrees: scatter of the yarns' directions and shear, which no good lay-up exceeds
+COVARIANCES, FACTORS = 2, 32  # kept: some 10 MB each at 400 points
 WIDEST = 0.3  # of the measured patch's longer side: what varies more slowly is no scatter
 
 
@@ -36,23 +37,6 @@ class Scatter:
 
 
 NO_SCATTER = Scatter()
-
-
-Key = TypeVar("Key")
-Value = TypeVar("Value")
-COVARIANCES, FACTORS = 2, 32  # kept: some 10 MB each at 400 points
-
-
-def kept(store: dict[Key, Value], key: Key, make: Callable[[], Value], most: int) -> Value:
-    """An entry of ``store``, made if it is not there; the one asked for longest ago goes where there are more.
-
-    A cache on methods would hold its object in a circle, and gigabytes with it until that is looked for.
-    """
-    value = store.pop(key) if key in store else make()
-    store[key] = value
-    while len(store) > most:
-        del store[next(iter(store))]
-    return value
 
 
 @dataclass(frozen=True, eq=False)

@@ -77,12 +77,14 @@ class Model:
 class Fitted:
     """A model fitted to an experiment: ``values`` (p,), and the fit's ``residual`` and ``slopes``, ``chi2``.
 
-    ``doubt`` (p,): standard deviations that the pitch of the net adds to the values, as measured; None for none.
+    ``doubt`` (p,): standard deviations that the pitch of the net adds to the values; None where it was not measured.
+    ``looked_at_only``: the last effect was looked at once and promised too little for more.
     """
 
     model: Model
     fit: Fit
     doubt: np.ndarray | None = None
+    looked_at_only: bool = False
 
     @property
     def values(self) -> np.ndarray:
@@ -119,15 +121,11 @@ def unfitted(experiment: Experiment) -> Fitted:
     return Fitted(model, Fit(model.neutral, residual, nothing, float(np.nansum((residual / experiment.noise) ** 2))))
 
 
-def fit_placement(experiment: Experiment, whiten: Whiten, start: np.ndarray | None = None) -> Fitted:
+def fit_placement(experiment: Experiment, whiten: Whiten) -> Fitted:
     """The model without effects."""
     model = Model(())
-    low, high = model.bounds
-    begin = np.zeros(3) if start is None else start
-    return Fitted(
-        model,
-        fit(predictor(experiment, model), experiment.measured, whiten, begin, model.steps, low, high),
-    )
+    predict = predictor(experiment, model)
+    return Fitted(model, fit(predict, experiment.measured, whiten, model.neutral, model.steps, *model.bounds))
 
 
 def add_effect(
@@ -151,7 +149,7 @@ def add_effect(
     seen = None
     if slow and likely is not None:
         seen = glance(experiment, predict, whiten, likely, base, effect)
-        explained = kind.costly and is_noise(least, len(experiment.measured))  # else one look is too little
+        explained = kind.costly and _is_noise(least, len(experiment.measured))  # else one look is too little
         if seen.gain < LEAST_GAIN or (explained and _hopeless(whiten, base, seen.after, least)):
             return _not_fitted(model, base, seen)
     start = start_values(experiment, predict, whiten, base, effect, seen)
@@ -179,10 +177,10 @@ def _not_fitted(model: Model, base: Fitted, seen: Glance) -> Fitted:
     away = seen.values - neutral
     slopes = np.column_stack([seen.signature / a if a else np.zeros(len(seen.signature)) for a in away])
     fit = Fit(np.append(base.values, neutral), base.fit.residual, np.hstack([base.fit.slopes, slopes]), base.fit.chi2)
-    return Fitted(model, fit)
+    return Fitted(model, fit, looked_at_only=True)
 
 
-def is_noise(chi2: float, values: int) -> bool:
+def _is_noise(chi2: float, values: int) -> bool:
     """Whether a chi-square is what noise alone gives to so many values."""
     return chi2 < values + 3.0 * math.sqrt(2.0 * values)
 
@@ -213,10 +211,11 @@ def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     return Fitted(model, fit(predict, experiment.measured, whiten, old.values, model.steps, low, high))
 
 
-def refined(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
+def refined(experiment: Experiment, whiten: Whiten, old: Fitted, ratio: float) -> Fitted:
     """A costly model fitted on from where it was, on the finer net of ``experiment``, with the slopes that it has.
 
-    Nets are of second order in the pitch: of what its halving changed in the values, a third is left.
+    Nets are of second order in the pitch: of what a pitch ``ratio`` times smaller changed in the values,
+    1/(ratio² - 1) is left, a third where it was halved. Where no step was taken, nothing is known of it.
     """
     predict = predictor(experiment, old.model)
     low, high = old.model.bounds
@@ -232,7 +231,8 @@ def refined(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     lost = np.isnan(old.fit.residual)
     chi2 = float((whiten(residual) ** 2).sum())
     fit = Fit(values, np.where(lost, np.nan, residual), old.fit.slopes, chi2)
-    return Fitted(old.model, fit, np.abs(values - old.values) / 3.0)
+    measured = ratio > 1.0 and values is not old.values
+    return Fitted(old.model, fit, np.abs(values - old.values) / (ratio**2 - 1.0) if measured else None)
 
 
 def _filled(residual: np.ndarray, before: np.ndarray) -> np.ndarray:

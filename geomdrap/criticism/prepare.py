@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.criticism.experiment import CHANNELS, COARSE, FINE, Experiment, Layup, flatten, predicted
+from geomdrap.criticism.smooth import note_on
 from geomdrap.errors import MeasurementError
 from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
 from geomdrap.measurement.match import Matched, match
-from geomdrap.measurement.noise import noise_of, repeats_of
+from geomdrap.measurement.noise import REPEATS, RESIDUAL, Noise, noise_of, noise_of_directions, repeats_of
 from geomdrap.measurement.outliers import find_outliers
 from geomdrap.measurement.plausible import check_labels, require_on_part
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 MOST_POINTS = 400  # with a dense covariance; more points are thinned out evenly
 POSITION = ("along", "across", "normal")
 OPTIONS = {"position": "--sigma-xyz", "shear": "--sigma-shear", "direction": "--sigma-direction"}
+UNITS = {"position": "mm", "shear": "deg", "direction": "deg"}
 NOT_POSITION = {"shear": "shear", "warp": "direction", "weft": "direction"}
 
 
@@ -35,12 +37,13 @@ def prepare(
 ) -> tuple[Experiment, tuple[str, ...]]:
     """The experiment, without the points that stand out from their neighbours, and notes on what was chosen.
 
-    ``sigma_xyz`` mm, ``sigma_shear`` and ``sigma_direction`` degrees apply where the table has no noise of its own;
-    shear is the difference of two directions and says their noise where nothing else does. With neither, noise is
-    read from how neighbouring residuals differ. Raises MeasurementError where nothing can be compared.
+    ``sigma_xyz`` mm, ``sigma_shear`` and ``sigma_direction`` degrees apply where the table has no noise of its own.
+    With neither, noise is read from replicates, else from how neighbouring residuals differ, and a note says so; that
+    of directions, where these do not say it, from that of the shear. Raises MeasurementError where nothing can be
+    compared.
     """
     require_on_part(surface, measurement)
-    notes: list[str] = []
+    notes = [*note_on(surface)]
     measurement = thinned(measurement, notes)
     lay = replace(layup, pitch=None)
     pitches = _pitches(surface, measurement, layup)
@@ -70,8 +73,6 @@ def prepare(
     channels, values = measured_table(measurement, found, frames)
     table = predicted(net, measurement, frames, channels)
     mask = np.isfinite(values) & np.isfinite(table) & np.isfinite(at).all(axis=1)[:, None]
-    if sigma_direction is None and measurement.sigma_direction is None and sigma_shear is not None:
-        sigma_direction = sigma_shear / float(np.sqrt(2.0))
     given = (sigma_xyz, sigma_shear, sigma_direction)
     sigma, more = _noise(measurement, channels, values, values - table, at, given)
     for outlier in find_outliers(net, measurement, found, *_by_kind(channels, sigma)):
@@ -129,27 +130,39 @@ def _noise(
     at: np.ndarray,
     given: tuple[float | None, float | None, float | None],
 ) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Noise (n, c) of every value, and warnings; ``given`` for positions, shear and directions.
+    """Noise (n, c) of every value, and notes on it; ``given`` for positions, shear and directions.
 
     Raises MeasurementError where there is no way to know it.
     """
     sigma = np.full(values.shape, np.nan)
     repeats = repeats_of(measurement)
-    warnings: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
     columns = (measurement.sigma_xyz, measurement.sigma_shear, measurement.sigma_direction)
-    for kind, option, column, told in zip(OPTIONS, OPTIONS.values(), columns, given, strict=True):
+    shear = given[1]
+    for kind, column, told in zip(OPTIONS, columns, given, strict=True):
         own = [c for c, name in enumerate(channels) if NOT_POSITION.get(name, "position") == kind]
         if not own:
             continue
-        noise, more = noise_of(kind, column, told, values[:, own], repeats, residual[:, own], at)
-        if noise.sigma is None:
-            raise MeasurementError(
-                f"{measurement.source}: there are too few points to read the noise of the {kind} from them; give it "
-                f"({option})"
-            )
-        sigma[:, own] = noise.sigma[:, None]
-        warnings += more
-    return sigma, warnings
+        if kind == "direction":
+            noise, more = noise_of_directions(column, told, shear, residual[:, own], repeats, at)
+        else:
+            noise, more = noise_of(kind, column, told, values[:, own], repeats, residual[:, own], at)
+        sigma[:, own] = _known(noise, kind, measurement)[:, None]
+        shear = noise.typical if kind == "shear" else shear
+        read = noise.source in (REPEATS, RESIDUAL)
+        notes += (f"noise of the {kind} {noise.typical:.2g} {UNITS[kind]}, from {noise.source}",) if read else ()
+        notes += more
+    return sigma, notes
+
+
+def _known(noise: Noise, kind: str, measurement: Measurement) -> np.ndarray:
+    """Standard deviations (n,); raises MeasurementError where there is no way to know them."""
+    if noise.sigma is None:
+        raise MeasurementError(
+            f"{measurement.source}: there are too few points to read the noise of the {kind} from them; give it "
+            f"({OPTIONS[kind]})"
+        )
+    return noise.sigma
 
 
 def _by_kind(channels: tuple[str, ...], sigma: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None]:

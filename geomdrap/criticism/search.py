@@ -151,7 +151,7 @@ def _in_range(model: Fitted, sigma: np.ndarray) -> bool:
     own = model.parameters_of(model.model.effects[-1])
     values = [(p, float(model.values[k])) for p, k in own]
     at_bound = [v in (p.low, p.high) and v != p.neutral and not _natural(p, v) for p, v in values]
-    if getattr(make(model.model.effects[-1]), "acts_at_once", False):
+    if make(model.model.effects[-1]).acts_at_once:
         acts = any(v != p.neutral for p, v in values)
     else:
         acts = any(abs(v - p.neutral) > CLEAR * sigma[k] for (p, v), (_, k) in zip(values, own, strict=True))

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.fishnet.relax_surface import smooth_normals
+from geomdrap.surface.quarter import quartered
 
 if TYPE_CHECKING:
     from geomdrap.surface import Surface
@@ -29,20 +30,27 @@ def smoothed(surface: Surface) -> Surface:
     faces = surface.triangles
     if 4 * len(faces) > MOST_FACETS:
         return surface
-    pairs = np.concatenate([faces, np.roll(faces, -1, axis=1)]).reshape(2, -1).T  # edge k of facet f in row 3 f + k
-    edges, number = np.unique(np.sort(pairs, axis=1), axis=0, return_inverse=True)
-    number = number.ravel()
+    edges, side, split = quartered(faces, len(surface.points))
+    number = side.ravel()
     total = [np.bincount(number, column) for column in _lifts(surface).reshape(-1, 3).T]
     lifts = np.column_stack(total) / np.bincount(number)[:, None]
     if np.linalg.norm(lifts, axis=1).max() < LEAST_LIFT:
         return surface
     middles = surface.points[edges].mean(axis=1) + lifts
-    a, b, c = faces.T
-    ab, bc, ca = (len(surface.points) + number).reshape(-1, 3).T
-    split = np.stack([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]).transpose(2, 0, 1).reshape(-1, 3)
     numbers = np.repeat(surface.source_face, 4)
     points = np.vstack([surface.points, middles])
     return Surface(points, split, source=surface.source, face_numbers=numbers, notes=surface.notes)
+
+
+def note_on(surface: Surface) -> tuple[str, ...]:
+    """A sentence where a part has too many facets to be smoothed, none where not."""
+    count = len(surface.triangles)
+    if 4 * count <= MOST_FACETS:
+        return ()
+    return (
+        f"nets lie on the {count} facets of the part itself: only up to {MOST_FACETS // 4} are they rounded to the "
+        "smooth tool that they stand for",
+    )
 
 
 def _lifts(surface: Surface) -> np.ndarray:

@@ -2,7 +2,8 @@
 
 A linear step from nothing does for effects that act in proportion; others have thresholds, one sign, or no slope at
 nothing, and are tried at some values first. What takes seconds a drape is looked at once before that: where neither
-the likely lay-up scatter leaves anything for it to explain, nor it could come near the best model known, it is done.
+the likely lay-up scatter leaves anything for it to explain, nor it could come near the best model known, it is done:
+it is not fitted, and a diagnosis says that it was looked at only.
 """
 
 from __future__ import annotations

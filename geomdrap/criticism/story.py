@@ -81,7 +81,7 @@ def table_rows(d: Diagnosis) -> list[tuple[str, ...]]:
 def _row(t: Tried) -> tuple[str, ...]:
     return (
         ("* " if t.selected else "  ") + t.name,
-        _list(t.values),
+        "looked at only" if t.looked_at_only else _list(t.values),
         f"{100 * max(t.evidence.share, 0.0):.0f} %",
         f"{t.cv_error:.2f}",
         f"{t.evidence.p_family:.1g}",

@@ -77,6 +77,7 @@ def _row(
         confounded_with=_confounded(of, name, final),
         visible=_visible(of, name, final),
         selected=selected,
+        looked_at_only=model.looked_at_only,
     )
 
 

@@ -78,8 +78,7 @@ def trends(experiment: Experiment, model: Fitted) -> list[str]:
     from geomdrap.criticism.compare_trends import AGAINST
 
     net = experiment.draped(model.model.built(model.values))
-    sigma_xyz, sigma_shear = (None if s is None else float(s[0]) for s in experiment.noise_by_kind())
-    comparison = compare_net(net, experiment.measurement, sigma_xyz=sigma_xyz, sigma_shear=sigma_shear)
+    comparison = compare_net(net, experiment.measurement, **experiment.noise_told())
     return [
         f"the {t.kind} residual {'grows' if t.rho > 0 else 'falls'} with {AGAINST[t.against]} (rho {t.rho:.2f})"
         for t in comparison.trends

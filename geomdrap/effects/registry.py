@@ -8,7 +8,7 @@ from importlib import import_module
 from importlib.metadata import entry_points
 
 from geomdrap.errors import EffectError
-from geomdrap.fishnet import Effect
+from geomdrap.fishnet import Effect, Parameter
 
 GROUP = "geomdrap.effects"  # of entry points of other packages
 
@@ -103,13 +103,22 @@ def asked(name: str, values: Mapping[str, float]) -> Effect:
     """
     effect = make(name, **values)
     if effect.is_neutral and all(effect.values[p] != _neutral(effect, p) for p in values):
+        # those of which any would do: a threshold, such as an onset, does nothing alone
         missing = [p for p in effect.parameters if p.name not in values]
+        missing = [p for p in missing if _acts(effect, p)] or missing
+        if not missing:
+            raise EffectError(f"effect {name} does nothing with these values; give others")
         first = missing[0]
         raise EffectError(
             f"effect {name} does nothing without a value of {' or '.join(p.name for p in missing)}: give one, "
             f"e.g. {name}:{first.name}={first.typical:g}"
         )
     return effect
+
+
+def _acts(effect: Effect, more: Parameter) -> bool:
+    """Whether an effect that does nothing does something with the typical value of one parameter more."""
+    return not type(effect)(**{**effect.values, more.name: more.typical}).is_neutral
 
 
 def _neutral(effect: Effect, name: str) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import ClassVar
 
 from geomdrap.fishnet import Effect, Fabric, Parameter
 
@@ -25,7 +24,7 @@ class ShearStiffness(Effect):
     seen_by = "marked crossings, shear, fibre directions"
     confounded_with = ("steering", "shear-asymmetry", "locking")
     costly = True
-    acts_at_once: ClassVar[bool] = True  # a value near 0 acts as much as one that is clearly not 0
+    acts_at_once = True  # a value near 0 acts as much as one that is clearly not 0
     parameters = (Parameter("ratio", "", 0.0, 1.0, 0.003, 0.0, "shear stiffness as a share of that of the yarns"),)
 
     def on_fabric(self, fabric: Fabric) -> Fabric:

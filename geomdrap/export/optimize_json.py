@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geomdrap import __version__
 from geomdrap.export.report_json import plain
-from geomdrap.export.sweep_json import COLUMNS
+from geomdrap.export.sweep_json import COLUMNS, said, settings
 
 if TYPE_CHECKING:
+    from geomdrap.fields import Drape
     from geomdrap.sweep import Optimum, Row
 
 SCHEMA = "geomdrap.optimize/1"
 
 
-def as_dict(optimum: Optimum, files: Mapping[str, str | Path] | None = None) -> dict[str, Any]:
+def as_dict(
+    optimum: Optimum, best: Drape, files: Mapping[str, str | Path] | None = None, notes: Iterable[str] = ()
+) -> dict[str, Any]:
     """The JSON object of an optimum (schema ``geomdrap.optimize/1``): mm, mm², degrees, shares 0 to 1.
 
     ``score`` is the value of the objective, with what is bare; ``sweep`` is the best row of the global sweep alone.
+    ``warnings``, and ``notes`` after those given, are of the best drape, ``best``.
     """
     sweep = optimum.sweep
 
@@ -30,17 +33,13 @@ def as_dict(optimum: Optimum, files: Mapping[str, str | Path] | None = None) -> 
     return plain(
         {
             "schema": SCHEMA,
-            "version": __version__,
-            "part": Path(sweep.job.surface.source).name,
-            "facets": len(sweep.job.surface.triangles),
-            "objective": str(sweep.objective),
-            "effects": [{"name": e.title(), "values": getattr(e, "values", {})} for e in sweep.job.effects],
+            **settings(sweep, best),
             "best": row_as_dict(optimum.best),
             "sweep": row_as_dict(optimum.of_sweep),
             "path": [row_as_dict(row) for row in optimum.path],
             "swept": optimum.swept,
             "drapes": len(sweep.rows),
             "converged": optimum.converged,
-            "files": {key: str(name) for key, name in (files or {}).items()},
+            **said(best, files, notes),
         }
     )

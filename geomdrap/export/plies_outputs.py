@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import re
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +15,7 @@ from geomdrap.export.report_json import as_text, is_incomplete, plain
 from geomdrap.export.whole import write_whole
 
 if TYPE_CHECKING:
+    from geomdrap.export.map_onto import ElementPly
     from geomdrap.sweep import Ply
 
 SCHEMA = "geomdrap.plies/1"
@@ -51,22 +54,30 @@ def write_plies(
     folder: Path,
     names: Iterable[str],
     progress: Callable[[float], None] = lambda _: None,
+    elements: Sequence[ElementPly | None] = (),
 ) -> dict[int, dict[str, Path]]:
     """Write the outputs ``names`` of every ply to ``folder/ply-NUMBER``, and plies.json; the files of each ply.
 
-    ``extras`` hold the thickness of a ply, and what some formats take.
-
+    ``extras`` hold the thickness of a ply, and what some formats take; ``elements``: each ply on elements, where they
+    are made already.
     Raises `GeomdrapError` if a folder cannot be written.
     """
     wanted = list(names)
     if not wanted:
         return {}
     files = {}
-    for ply in plies:
-        files[ply.number] = write_all(ply.drape, folder / f"ply-{ply.number}", wanted, extras=extras)
+    for ply, on in zip(plies, elements or [None] * len(plies), strict=True):
+        own = replace(extras, elements=on)
+        files[ply.number] = write_all(ply.drape, folder / f"ply-{ply.number}", wanted, extras=own)
         progress(ply.number / len(plies))
     named = {
         number: {key: Path(path.parent.name, path.name) for key, path in own.items()} for number, own in files.items()
     }
     write_whole(folder / FILE, as_text(as_dict(plies, extras.ply_thickness, named)))
     return files
+
+
+def left_over_plies(folder: Path, numbers: Collection[int]) -> list[str]:
+    """Name the folders of plies in ``folder`` that are none of ``numbers``: they are of another, earlier run."""
+    there = sorted(int(path.name[4:]) for path in folder.glob("ply-*") if re.fullmatch(r"ply-\d+", path.name))
+    return [f"ply-{number}" for number in there if number not in numbers]

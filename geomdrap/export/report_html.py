@@ -89,9 +89,9 @@ def description(result: Drape, mesh: ReportMesh) -> dict[str, Any]:
     from geomdrap.fishnet import Status
 
     net = result.net
-    seams = [piece for seam in seams_of(result) for piece in seam.pieces]
+    seams = [seam.v for seam in seams_of(result)]
     return {
-        **({"seams": line_path(seams)} if seams else {}),
+        **({"seams": seams} if seams else {}),
         "space": box(mesh.space),
         "fabric": box(mesh.fabric),
         "pitch": net.pitch,
@@ -129,10 +129,5 @@ def normal_near(result: Drape, point: np.ndarray) -> np.ndarray:
 
 def contour_path(polygons: Sequence[np.ndarray]) -> str:
     """Closed polygons (k, 2) mm as the data of one SVG path."""
-    return "".join(line_path([polygon]) + "Z" for polygon in polygons)
-
-
-def line_path(lines: Sequence[np.ndarray]) -> str:
-    """Lines (k, 2) mm as the data of one SVG path."""
-    rounded = [np.round(line, PLACES) + 0.0 for line in lines]
-    return "".join("M" + "L".join(f"{x:.6g},{y:.6g}" for x, y in line.tolist()) for line in rounded)
+    rounded = [np.round(polygon, PLACES) + 0.0 for polygon in polygons]
+    return "".join("M" + "L".join(f"{x:.6g},{y:.6g}" for x, y in polygon.tolist()) + "Z" for polygon in rounded)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ from geomdrap.export.whole import write_whole
 if TYPE_CHECKING:
     from geomdrap.fields import Drape
     from geomdrap.fields.roll import Roll
+    from geomdrap.fishnet import Effect
 
 SCHEMA = "geomdrap.drape/1"
 DECIMALS = 6
@@ -41,7 +42,7 @@ def as_dict(result: Drape, files: Mapping[str, str | Path] | None = None) -> dic
             "normal": net.normal0,
             "angle": net.angle,
             "pitch": net.pitch,
-            "effects": [{"name": e.title(), "values": getattr(e, "values", {})} for e in net.effects],
+            "effects": effects_as_dicts(net.effects),
             "nodes": int(np.isfinite(net.points[..., 0]).sum()),
             "cells": int(np.sum(net.cell_valid)),
             "shear": _fields(result.statistics, "max", "p95", "mean"),
@@ -93,6 +94,11 @@ def as_text(document: Mapping[str, Any]) -> str:
 def is_incomplete(result: Drape) -> bool:
     """Tell whether less than 99.5 % of the part is covered: what ``--strict`` turns into exit code 1."""
     return not result.area.coverage >= COMPLETE_COVERAGE
+
+
+def effects_as_dicts(effects: Iterable[Effect]) -> list[dict[str, Any]]:
+    """Give the names and values of effects as result files hold them."""
+    return [{"name": effect.title(), "values": getattr(effect, "values", {})} for effect in effects]
 
 
 def absent_counts(result: Drape) -> dict[str, int]:

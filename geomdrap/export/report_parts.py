@@ -181,7 +181,7 @@ def area_rows(result: Drape) -> Iterator[tuple[str, str, str]]:
 
 
 def roll_rows(roll: Roll) -> Iterator[tuple[str, str, str]]:
-    """The strips that the pattern is laid from, and the seams between them (green lines on the pattern)."""
+    """The strips that the pattern is laid from, and the seams between them (green in both views)."""
     yield "roll", f"{roll.width:g} mm wide", f"strips overlap by {roll.overlap:g} mm" if roll.overlap > 0.0 else ""
     yield "used", f"{roll.length:.1f} mm", f"{percent(roll.waste)} of it is waste"
     for number, strip in enumerate(roll.strips, start=1):

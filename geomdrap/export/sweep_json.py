@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geomdrap import __version__
-from geomdrap.export.report_json import plain
+from geomdrap.export.report_json import effects_as_dicts, plain
 
 if TYPE_CHECKING:
+    from geomdrap.fields import Drape
     from geomdrap.sweep import Row, Sweep
 
 SCHEMA = "geomdrap.sweep/1"
@@ -19,29 +20,50 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def as_dict(sweep: Sweep, files: Mapping[str, str | Path] | None = None) -> dict[str, Any]:
+def as_dict(
+    sweep: Sweep, best: Drape, files: Mapping[str, str | Path] | None = None, notes: Iterable[str] = ()
+) -> dict[str, Any]:
     """The JSON object of a sweep (schema ``geomdrap.sweep/1``), rows the best first: mm, mm², degrees, shares 0 to 1.
 
-    ``rank`` counts from 1; it is None, as are the numbers, where ``reason`` says why the case failed.
+    ``rank`` counts from 1; it is None, as are the numbers, where ``reason`` says why the case failed. ``warnings``,
+    and ``notes`` after those given, are of the best case, ``best``.
     """
-    surface, job = sweep.job.surface, sweep.job
     rows = ranked_rows(sweep)
     return plain(
         {
             "schema": SCHEMA,
-            "version": __version__,
-            "part": Path(surface.source).name,
-            "facets": len(surface.triangles),
-            "objective": str(sweep.objective),
+            **settings(sweep, best),
             "pareto": list(sweep.criteria),
-            "blank": None if job.reach is None else [2.0 * r for r in job.reach],
-            "effects": [{"name": e.title(), "values": getattr(e, "values", {})} for e in job.effects],
             "cases": len(rows),
             "failed": sum(row["rank"] is None for row in rows),
             "rows": rows,
-            "files": {key: str(name) for key, name in (files or {}).items()},
+            **said(best, files, notes),
         }
     )
+
+
+def settings(sweep: Sweep, best: Drape) -> dict[str, Any]:
+    """What all rows share: the part, the objective, and how plies are laid."""
+    surface, job = sweep.job.surface, sweep.job
+    return {
+        "version": __version__,
+        "part": Path(surface.source).name,
+        "facets": len(surface.triangles),
+        "objective": str(sweep.objective),
+        "blank": None if job.reach is None else [2.0 * r for r in job.reach],
+        "reference": job.reference,
+        "limit_angle": best.limit_angle,
+        "effects": effects_as_dicts(job.effects),
+    }
+
+
+def said(best: Drape, files: Mapping[str, str | Path] | None, notes: Iterable[str]) -> dict[str, Any]:
+    """What is doubtful, what is to be known, and the files."""
+    return {
+        "warnings": list(best.warnings),
+        "notes": [*notes, *best.net.notes],
+        "files": {key: str(name) for key, name in (files or {}).items()},
+    }
 
 
 def ranked_rows(sweep: Sweep) -> list[dict[str, Any]]:

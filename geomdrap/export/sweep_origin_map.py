@@ -27,6 +27,8 @@ HALF = 11.0
 
 def draw_origins(figure: Any, box: Box, sweep: Sweep, way: Sequence[Row] = ()) -> None:
     """The map in a box given in inches, with its colour bar; ``way`` are the rows of a search, drawn as a line."""
+    from geomdrap.sweep.ranking import best_of_origins
+
     inside = box.inset(*AROUND)
     axes = place(figure, inside)
     columns, rows = round(inside.width * DOTS), round(inside.height * DOTS)
@@ -37,7 +39,7 @@ def draw_origins(figure: Any, box: Box, sweep: Sweep, way: Sequence[Row] = ()) -
     if len(way) > 1:
         steps = viewport.pixels(np.array([row.origin for row in way]))[:, :2]
         axes.plot(*steps.T, color=palette.HIGH, lw=1.4, marker="o", ms=2.5, zorder=2)
-    best = best_of_origins(sweep)
+    best = best_of_origins(sweep.ranked)
     score = np.array([sweep.objective.score(row) for row in best])
     at = viewport.pixels(np.array([row.origin for row in best]))[:, :2]
     points = axes.scatter(*at.T, c=score, cmap=MAP, s=90, edgecolors=palette.INK, linewidths=0.8, zorder=3)
@@ -51,15 +53,6 @@ def draw_origins(figure: Any, box: Box, sweep: Sweep, way: Sequence[Row] = ()) -
         f"{sweep.objective}, with what is bare; red ring: the best{', line: the way there' if len(way) > 1 else ''}"
     )
     _draw_bar(figure, box, points, words)
-
-
-def best_of_origins(sweep: Sweep) -> list[Row]:
-    """The best row of each origin at which one could be draped."""
-    found: dict[object, Row] = {}
-    for row in sweep.ranked:
-        if row.reason is None:
-            found.setdefault(row.asked, row)
-    return list(found.values())
 
 
 def _viewport(surface: Surface, columns: int, rows: int) -> Viewport:

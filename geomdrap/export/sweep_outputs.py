@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geomdrap.export.optimize_json import as_dict as optimum_as_dict
-from geomdrap.export.outputs import write_all
+from geomdrap.export.outputs import Extras, write_all
 from geomdrap.export.report_json import as_text
 from geomdrap.export.sweep_json import as_dict
 from geomdrap.export.sweep_table import as_text as as_table
@@ -22,15 +23,21 @@ OPTIMIZE_OUTPUTS = {"json": "optimize.json", "csv": "optimize.csv", "png": "opti
 
 
 def write_sweep(
-    sweep: Sweep, best: Drape, folder: Path, names: Iterable[str], progress: Callable[[float], None] = lambda _: None
+    sweep: Sweep,
+    best: Drape,
+    folder: Path,
+    names: Iterable[str],
+    progress: Callable[[float], None] = lambda _: None,
+    notes: Sequence[str] = (),
+    command: str = "",
 ) -> dict[str, Path]:
     """Write the outputs ``names`` of a sweep to ``folder``; the path of each by its key.
 
-    ``best`` is the best case, whose own files go to a folder of that name. Raises `GeomdrapError` if the folder
-    cannot be written.
+    ``best`` is the best case, whose own files go to a folder of that name; ``notes`` on the cases go before its own;
+    ``command`` is the command line that its report shows. Raises `GeomdrapError` if the folder cannot be written.
     """
     files = _chosen(SWEEP_OUTPUTS, folder, names)
-    return _write(files, sweep, None, best, lambda named: as_dict(sweep, named), progress)
+    return _write(files, sweep, None, best, partial(as_dict, sweep, best, notes=notes), command, progress)
 
 
 def write_optimum(
@@ -39,10 +46,13 @@ def write_optimum(
     folder: Path,
     names: Iterable[str],
     progress: Callable[[float], None] = lambda _: None,
+    notes: Sequence[str] = (),
+    command: str = "",
 ) -> dict[str, Path]:
     """The same of an optimum: the table holds all drapes, the picture the sweep and the way of the search."""
     files = _chosen(OPTIMIZE_OUTPUTS, folder, names)
-    return _write(files, optimum.sweep, optimum, best, lambda named: optimum_as_dict(optimum, named), progress)
+    document = partial(optimum_as_dict, optimum, best, notes=notes)
+    return _write(files, optimum.sweep, optimum, best, document, command, progress)
 
 
 def _chosen(outputs: dict[str, str], folder: Path, names: Iterable[str]) -> dict[str, Path]:
@@ -56,13 +66,14 @@ def _write(
     optimum: Optimum | None,
     best: Drape,
     document: Callable[[dict[str, str]], dict[str, Any]],
+    command: str,
     progress: Callable[[float], None],
 ) -> dict[str, Path]:
     """Write what is in ``files``: the best drape to a folder of its own, the rest together."""
     from geomdrap.export import sweep_picture
 
     if "best" in files:
-        write_all(best, files["best"], progress=lambda share: progress(0.7 * share))
+        write_all(best, files["best"], progress=lambda share: progress(0.7 * share), extras=Extras(command))
     if not files:
         return files
     with whole_folder(next(iter(files.values())).parent) as scratch:

@@ -301,7 +301,7 @@ def _searched(
     share = min(1.0, LONGEST_STEP * float(problem.rest_u.max()) / max(longest, 1e-300))
     whole = share == 1.0
     for _ in range(4):
-        moved = stand(problem.surface, problem.corner_normals, footing.point + share * way)
+        moved = stand(problem.surface, problem.corner_normals, footing.point + share * way, footing)
         y = x.copy()
         y[moves] = moved.lifted
         then = _energy(problem, y)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from geomdrap.fishnet.follow_surface import nearest_from
 from geomdrap.geodesic.compiled import kernel
 
 if TYPE_CHECKING:
@@ -43,13 +44,19 @@ def smooth_normals(triangles: np.ndarray, normals: np.ndarray, angles: np.ndarra
             fill[triangles[f, k]] += 1
     out = np.zeros((len(triangles), 3, 3))
     for f in range(len(triangles)):
+        nx, ny, nz = normals[f, 0], normals[f, 1], normals[f, 2]
         for k in range(3):
             v = triangles[f, k]
+            x = y = z = 0.0
             for at in around[start[v] : start[v + 1]]:
                 g = at // 3
-                if (normals[f] * normals[g]).sum() >= CREASE_COSINE:
-                    out[f, k] += angles[g, at % 3] * normals[g]
-            out[f, k] /= math.sqrt((out[f, k] ** 2).sum())
+                if nx * normals[g, 0] + ny * normals[g, 1] + nz * normals[g, 2] >= CREASE_COSINE:
+                    weight = angles[g, at % 3]
+                    x += weight * normals[g, 0]
+                    y += weight * normals[g, 1]
+                    z += weight * normals[g, 2]
+            size = math.sqrt(x * x + y * y + z * z)
+            out[f, k, 0], out[f, k, 1], out[f, k, 2] = x / size, y / size, z / size
     return out
 
 
@@ -68,13 +75,18 @@ class Footing(NamedTuple):
     outside: np.ndarray
 
 
-def stand(surface: Surface, corner_normals: np.ndarray, points: np.ndarray) -> Footing:
+def stand(surface: Surface, corner_normals: np.ndarray, points: np.ndarray, last: Footing | None = None) -> Footing:
     """Nearest places of the surface; beyond its rim it goes on in the plane of the facets there.
 
-    ``corner_normals`` (m, 3, 3) are its ``smooth_normals``.
+    ``corner_normals`` (m, 3, 3) are its ``smooth_normals``. Nodes that have moved a little are looked for from where
+    they stood ``last``.
     """
-    near = surface.nearest(points)
-    face, point = near.face, near.point.copy()
+    if last is None:
+        near = surface.nearest(points)
+        face, point = near.face, near.point.copy()
+    else:
+        mesh = (surface.points, surface.triangles, surface.neighbours, surface.neighbour_edge)
+        point, face = nearest_from(*mesh, points, last.face)
     corners = surface.triangles[face]
     gradient = _hat_gradients(surface, face, corners)
     vertices = surface.points[corners]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     Origin = str | int | Sequence[float] | np.ndarray
 
-AT_VERTEX = 1e-7  # of the face's size: a seed this close to a vertex is on it
+AT_VERTEX = 1e-4  # of the face's size: a seed this close to a vertex is on it, as its rounded coordinates are
 ALONG_NORMAL = math.cos(math.radians(5.0))  # a reference direction this close to the normal gives no heading
 
 
@@ -107,8 +107,8 @@ def plant(
 ) -> Seed:
     """Seed at a point (3,) of the surface, the warp at ``angle`` degrees, the weft ``weft_angle`` degrees beyond.
 
-    On a vertex the four half-axes share the angles of its faces in proportion, so that opposite ones are one
-    straightest line.
+    On a vertex, or as close to one as written coordinates are, the four half-axes share the angles of its faces in
+    proportion, so that opposite ones are one straightest line.
     """
     face, point, _ = locate(surface, point)
     vertex = _corner_at(surface, face, point)
@@ -116,6 +116,7 @@ def plant(
     around = total_angle(*fan) if vertex >= 0 else -1.0
     normal = surface.normals[face]
     if around > 0.0:
+        point = surface.points[surface.triangles[face, vertex]]
         normal = surface.lidded.vertex_normals[surface.triangles[face, vertex]]
     across = heading_frame(normal, reference)
     beside = np.cross(normal, across)

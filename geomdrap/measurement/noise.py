@@ -25,6 +25,7 @@ ROUNDING = 1e-6
 
 COLUMN, GIVEN, REPEATS = "columns of the table", "given", "replicates"
 RESIDUAL = "neighbour differences of the residual"
+SHEAR = "noise of the shear over √2"
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,24 +49,53 @@ def noise_of(
     group: np.ndarray | None,
     residual: np.ndarray,
     places: np.ndarray,
+    otherwise: tuple[float, str] | None = None,
 ) -> tuple[Noise, tuple[str, ...]]:
     """Noise of values (n, k), from the first of: column, given, repeats, neighbour differences; and warnings.
 
     ``column`` (n,) may hold NaN, which the next source fills. ``group`` (n,) numbers the repeats of one mark;
-    ``residual`` (n, k) with NaN where there is no prediction, at ``places`` (n, 2). Raises MeasurementError for a
-    given noise that is not above 0.
+    ``residual`` (n, k) with NaN where there is no prediction, at ``places`` (n, 2). ``otherwise`` is a noise and
+    its source for where none of these says it. Raises MeasurementError for a given noise that is not above 0.
     """
-    if given is not None and not (np.isfinite(given) and given > 0.0):
-        raise MeasurementError(f"{name} is a standard deviation and must be above 0, not {given:g}")
+    require_above_zero(name, given)
     repeats, freedom = pooled(values, group)
     if not repeats > DIGITS * float(np.nanmax(np.abs(values), initial=0.0)):
         freedom = 0  # copies of a row are no repeats
     fallback, source = _fallback(given, repeats, freedom, residual, places)
+    if fallback is None and otherwise is not None:
+        fallback, source = otherwise
     sigma, source = _filled(column, fallback, source, len(values))
     if sigma is None:
         return Noise(None, None), ()
     noise = Noise(sigma, source)
     return noise, _disagreement(name, noise, repeats, freedom)
+
+
+def noise_of_directions(
+    column: np.ndarray | None,
+    given: float | None,
+    shear: float | None,
+    turn: np.ndarray,
+    group: np.ndarray | None,
+    places: np.ndarray,
+) -> tuple[Noise, tuple[str, ...]]:
+    """Noise of directions by their turns (n, k), degrees, from the model; sources as in `noise_of`, and warnings.
+
+    Where none of them says it, the noise of the ``shear`` over √2, which is said: shear is the difference of two
+    directions. Raises MeasurementError for a noise that is not above 0.
+    """
+    require_above_zero("sigma_shear", shear)
+    otherwise = None if shear is None else (shear / float(np.sqrt(2.0)), SHEAR)
+    noise, said = noise_of("sigma_direction", column, given, turn, group, turn, places, otherwise)
+    if otherwise is not None and noise.source is not None and noise.source.endswith(SHEAR):
+        said = (*said, f"the noise of the directions, {otherwise[0]:.3g}°, is the {SHEAR}: nothing else says it")
+    return noise, said
+
+
+def require_above_zero(name: str, sigma: float | None) -> None:
+    """Raise MeasurementError for a standard deviation, if there is one, that is not above 0."""
+    if sigma is not None and not (np.isfinite(sigma) and sigma > 0.0):
+        raise MeasurementError(f"{name} is a standard deviation and must be above 0, not {sigma:g}")
 
 
 def pooled(values: np.ndarray, group: np.ndarray | None) -> tuple[float, int]:

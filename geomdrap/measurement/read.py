@@ -11,7 +11,7 @@ import numpy as np
 from geomdrap.errors import MeasurementError
 from geomdrap.measurement.columns import LENGTHS, Chosen, choose_columns
 from geomdrap.measurement.measurement import Measurement
-from geomdrap.measurement.table import Table, read_table
+from geomdrap.measurement.table import Table, number_of, read_table
 
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 SIGMAS = ("sigma_xyz", "sigma_shear", "sigma_direction")
@@ -84,7 +84,7 @@ def _numbers(table: Table, chosen: Chosen, name: str) -> np.ndarray:
     values = np.empty(len(table.rows))
     for k, cells in enumerate(table.rows):
         text = cells[place]
-        value = _number(text, comma)
+        value = number_of(text, comma)
         if value is None:
             _refuse(table, k, chosen.heading[name], f"'{text[:40]}' is not a number")
         elif math.isinf(value):
@@ -94,20 +94,6 @@ def _numbers(table: Table, chosen: Chosen, name: str) -> np.ndarray:
         else:
             values[k] = value
     return values
-
-
-def _number(text: str, decimal_comma: bool) -> float | None:
-    """A number as people write it; NaN for an empty cell, None for text."""
-    if not text:
-        return math.nan
-    if decimal_comma and text.count(",") == 1 and "." not in text:
-        text = text.replace(",", ".")
-    if "_" in text:
-        return None
-    try:
-        return float(text.replace("−", "-"))
-    except ValueError:
-        return None
 
 
 def _refuse(table: Table, k: int, heading: str, why: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,20 +36,20 @@ def read_table(path: Path) -> Table:
     if not separator:
         raise MeasurementError(
             f"{source}, line {number}: '{_short(first)}' is not a header with commas, semicolons or tabs between "
-            "the names of the columns, such as x,y,z,shear"
+            "the names of the columns, such as x,y,z"
         )
     header = tuple(_cells(first, separator, source, number))
     _require_header(header, source, number)
     rows = [_row(header, _cells(text, separator, source, n), source, n) for n, text in lines[1:]]
     if not rows:
-        raise MeasurementError(f"{source} has a header but no rows: there is nothing measured in it")
+        raise MeasurementError(f"{source} has a header but no rows: it needs a row per point")
     return Table(source, header, tuple(rows), tuple(n for n, _ in lines[1:]), separator)
 
 
 def _text(path: Path) -> str:
     """The file's text; UTF-8, UTF-16 with its mark, or Latin-1."""
     if path.is_dir():
-        raise MeasurementError(f"{path} is a folder; give the file with the measured table")
+        raise MeasurementError(f"{path} is a folder; give a file with a table")
     try:
         raw = path.read_bytes()
     except FileNotFoundError:
@@ -60,7 +61,7 @@ def _text(path: Path) -> str:
     except UnicodeDecodeError:
         text = raw.decode("latin-1")
     if CONTROL.search(text):
-        raise MeasurementError(f"{path.name} is not a text table: export the measured points as CSV")
+        raise MeasurementError(f"{path.name} is not a text table: export the points as CSV")
     return text
 
 
@@ -69,7 +70,7 @@ def _content(text: str, source: str) -> list[tuple[int, str]]:
     lines = enumerate(re.split("\r\n|\n|\r", text), start=1)
     kept = [(n, line) for n, line in lines if line.strip(" \t;,") and not line.lstrip().startswith("#")]
     if not kept:
-        raise MeasurementError(f"{source} is empty: it needs a header line, such as x,y,z,shear, and a row per point")
+        raise MeasurementError(f"{source} is empty: it needs a header line, such as x,y,z, and a row per point")
     return kept
 
 
@@ -94,8 +95,22 @@ def _row(header: tuple[str, ...], cells: list[str], source: str, number: int) ->
 def _require_header(header: tuple[str, ...], source: str, number: int) -> None:
     if all(_is_number(name) for name in header if name):
         raise MeasurementError(
-            f"{source}, line {number}: the header is missing; the first line must name the columns, as in x,y,z,shear"
+            f"{source}, line {number}: the header is missing; the first line must name the columns, as in x,y,z"
         )
+
+
+def number_of(text: str, decimal_comma: bool) -> float | None:
+    """A number as people write it; NaN for an empty cell, None for text."""
+    if not text:
+        return math.nan
+    if decimal_comma and text.count(",") == 1 and "." not in text:
+        text = text.replace(",", ".")
+    if "_" in text:
+        return None
+    try:
+        return float(text.replace("−", "-"))
+    except ValueError:
+        return None
 
 
 def _is_number(text: str) -> bool:

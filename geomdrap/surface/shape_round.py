@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from geomdrap.errors import SurfaceError
+from geomdrap.surface.quarter import quartered
 from geomdrap.surface.shape_mesh import (
     ROW_STEP,
     Mesh,
@@ -134,13 +135,9 @@ def _icosahedron() -> Mesh:
 
 def _split(points: Points, triangles: np.ndarray) -> Mesh:
     """Each triangle into four, the new vertices pushed out to the unit sphere."""
-    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    edges, number = np.unique(edges, axis=0, return_inverse=True)
+    edges, _, split = quartered(triangles, len(points))
     middle = points[edges].sum(axis=1)
     middle /= np.linalg.norm(middle, axis=1, keepdims=True)
-    ab, bc, ca = (number.ravel() + len(points)).reshape(-1, 3).T
-    a, b, c = triangles.T
-    split = np.stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], axis=1).reshape(-1, 3)
     return np.concatenate([points, middle]), split
 
 

@@ -5,7 +5,7 @@ from geomdrap.sweep.case import Case, Job
 from geomdrap.sweep.objective import CRITERIA, Objective
 from geomdrap.sweep.optimize import Optimum, optimize
 from geomdrap.sweep.origins import locate_origins
-from geomdrap.sweep.plies import Ply, lay_plies, parse_plies
+from geomdrap.sweep.plies import Ply, lay_plies
 from geomdrap.sweep.ranking import ranked
 from geomdrap.sweep.row import Row
 from geomdrap.sweep.run import Sweep, cases_of, run
@@ -24,7 +24,6 @@ __all__ = [
     "locate_origins",
     "optimize",
     "parse_angles",
-    "parse_plies",
     "ranked",
     "run",
 ]

@@ -15,12 +15,13 @@ from geomdrap.geodesic.trace import Stop, trace
 from geomdrap.sweep.case import Case, Job
 from geomdrap.sweep.objective import DEFAULT, Objective
 from geomdrap.sweep.pool import Pool, ThroughExecutor
-from geomdrap.sweep.ranking import ranked
+from geomdrap.sweep.ranking import best_of_origins, ranked
 from geomdrap.sweep.row import Row
 from geomdrap.sweep.run import Sweep, require_best, rows_of
 
 STARTS = 3  # best cases, of different origins, from which the search goes on
 HALF_TURN = 180.0  # a net turned by it is the same net
+HEADING_STEP = 15.0  # degrees between the headings from which a search begins
 FINEST = 0.25  # pitches by which a seed is moved at last: less changes nothing that could be laid
 FINEST_ANGLE = 0.25  # degrees, likewise
 BUDGET = 800
@@ -37,9 +38,9 @@ class Step:
     seed: float
     heading: float
 
-    def halved(self) -> Step:
-        """Half as far."""
-        return Step(0.5 * self.seed, 0.5 * self.heading)
+    def halved(self, least: Step) -> Step:
+        """Half as far, but as far as ``least``."""
+        return Step(max(0.5 * self.seed, least.seed), max(0.5 * self.heading, least.heading))
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,10 +102,10 @@ def optimize(
     """The seed and heading that make the objective smallest.
 
     First the ``cases`` are swept, and some more with seeds scattered between theirs; then the best of all, from
-    different origins, are refined on the surface: the seed
-    moves along geodesics in the directions of the yarns, the heading turns, both together; where nothing around is
-    better, the steps are halved (pattern search: R. Hooke and T. A. Jeeves, J. ACM 8, 1961). ``budget`` is the
-    greatest number of drapes after the sweep. Every value is that of a real drape, and the best of all is returned.
+    different origins, are refined on the surface: the seed moves along geodesics in the directions of the yarns, the
+    heading turns, both together; where nothing around is better, the steps are halved, down to a quarter of the pitch
+    and of a degree, which are tried too (pattern search: R. Hooke and T. A. Jeeves, J. ACM 8, 1961). ``budget`` is
+    the greatest number of drapes after the sweep. Every value is that of a real drape; the best of all is returned.
     ``pool``, ``done`` and ``on_row`` as for ``run``.
     Raises SweepError where there is no case, none can be draped, or the objective is unknown.
     """
@@ -120,7 +121,7 @@ def optimize(
         first_and_more = ranked([*first, *more], wanted)
         step = first_step(job, list(rows.found), first[0].pitch)
         paths, converged = [], True
-        for start in starts(first_and_more):
+        for start in best_of_origins(first_and_more)[:STARTS]:
             path, finished = _refine(job, rows, wanted, start, step, swept + budget)
             paths.append(path)
             converged = converged and finished
@@ -129,14 +130,24 @@ def optimize(
     return Optimum(everything, swept, first[0], tuple(best), converged)
 
 
+def first_headings(job: Job) -> tuple[float, ...]:
+    """Headings (degrees) from which a search begins if none are given.
+
+    Over a quarter turn, after which warp and weft have changed places; over half a turn where these differ: with
+    effects, and with a blank that is longer one way.
+    """
+    alike = not job.effects and (job.reach is None or job.reach[0] == job.reach[1])
+    return tuple(float(a) for a in np.arange(0.0, 0.5 * HALF_TURN if alike else HALF_TURN, HEADING_STEP))
+
+
 def scattered(job: Job, rows: Sequence[Row], count: int) -> list[Case]:
     """Cases at the centroid and at places as far as can be from all others, with two headings each.
 
     ``rows`` are those of the sweep, the best first: a place takes the heading of the best one at the nearest origin,
     and that turned by 45 degrees.
     """
-    known = starts(rows, len(rows))
-    places = [np.array(row.origin) for row in known]
+    known = best_of_origins(rows)
+    places = [locate(job.surface, row.asked)[1] for row in known]
     headings = [row.angle for row in known]
     middle = job.surface.points[job.surface.triangles].mean(axis=1)
     away = np.stack([np.linalg.norm(middle - place, axis=1) for place in places])
@@ -150,15 +161,6 @@ def scattered(job: Job, rows: Sequence[Row], count: int) -> list[Case]:
     return cases
 
 
-def starts(rows: Sequence[Row], most: int = STARTS) -> list[Row]:
-    """The best of ranked rows, each of another origin."""
-    by_origin: dict[object, Row] = {}
-    for row in rows:
-        if row.reason is None:
-            by_origin.setdefault(row.asked, row)
-    return list(by_origin.values())[:most]
-
-
 def first_step(job: Job, cases: Sequence[Case], pitch: float) -> Step:
     """Half the way between origins of the sweep, and between its headings; never below the finest."""
     origins, angles = {case.origin for case in cases}, sorted({case.angle for case in cases})
@@ -169,8 +171,8 @@ def first_step(job: Job, cases: Sequence[Case], pitch: float) -> Step:
 
 def _refine(job: Job, rows: Rows, objective: Objective, start: Row, step: Step, most: int) -> tuple[list[Row], bool]:
     """The rows from ``start`` to where no step finds a better one, and whether the budget sufficed."""
-    path = [start]
-    while step.seed >= FINEST * start.pitch or step.heading >= FINEST_ANGLE:
+    path, finest = [start], Step(FINEST * start.pitch, FINEST_ANGLE)
+    while True:
         for moves in (AXES, EDGES, CORNERS):
             around = _around(job, path[-1], step, moves)
             if len(rows.found) + sum(case not in rows.found for case in around) > most:
@@ -180,17 +182,20 @@ def _refine(job: Job, rows: Rows, objective: Objective, start: Row, step: Step, 
                 path.append(best)
                 break
         else:
-            step = step.halved()
-    return path, True
+            if step == finest:
+                return path, True
+            step = step.halved(finest)
 
 
 def _around(job: Job, row: Row, step: Step, moves: Sequence[tuple[int, int, int]]) -> list[Case]:
     """The cases that ``moves`` lead to, steps along the warp, along the weft, and of the heading, from a row's.
 
-    A move that leaves the part leads to no case.
+    They go from the origin that the row's case asks for: where effects displace the ply, they will displace that of
+    the new case too. A move that leaves the part leads to no case.
     """
-    here = job.surface.only_component(locate(job.surface, np.array(row.origin))[0])
-    face, point, _ = locate(here, np.array(row.origin))
+    face, asked, _ = locate(job.surface, row.asked)
+    here = job.surface.only_component(face)
+    face, point, _ = locate(here, asked)
     normal = here.normals[face]
     along = heading_frame(normal, job.reference)
     angle_rad = math.radians(row.angle)

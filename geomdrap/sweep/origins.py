@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import csv
-import io
+import math
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.errors import SweepError
+from geomdrap.errors import MeasurementError, SweepError
 from geomdrap.fishnet.pitch import choose_pitch
 from geomdrap.fishnet.seed import heading_frame, locate
+from geomdrap.measurement.table import number_of, read_table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,49 +59,45 @@ def _point(numbers: np.ndarray) -> Point:
 def _points(text: str) -> tuple[np.ndarray, list[str]]:
     """Points (n, 3) that a text writes out or whose file it names, and what to call each in messages."""
     if text.count(",") == 2 and not Path(text).exists():
-        return np.array([_numbers(text.split(","), f"origin {text}")]), [f"origin {text}"]
+        name = f"origin {text}"
+        return np.array([_numbers(text.split(","), False, name)]), [name]
     try:
-        content = Path(text).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        why = getattr(error, "strerror", None) or "is no text"
+        Path(text).open("rb").close()
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or "is no name of a file"
         raise SweepError(
             f"origins {text!r}: write centroid, x,y,z, vertex:N, grid:NxM, or the name of a CSV file with columns "
             f"x, y, z ({why})"
         ) from error
-    return _table(content, text)
+    return _columns(Path(text))
 
 
 def read_points(file: Path) -> np.ndarray:
     """Points (n, 3) mm of a CSV file with columns x, y, z. Raises SweepError where it cannot be read."""
+    return _columns(file)[0]
+
+
+def _columns(file: Path) -> tuple[np.ndarray, list[str]]:
+    """The points (n, 3) of a table with columns x, y, z, and what to call each: its file and line."""
     try:
-        return _table(file.read_text(encoding="utf-8-sig"), str(file))[0]
-    except (OSError, UnicodeDecodeError) as error:
-        raise SweepError(f"{file} cannot be read: {getattr(error, 'strerror', None) or 'it is no text'}") from error
-
-
-def _table(content: str, file: str) -> tuple[np.ndarray, list[str]]:
-    """The columns x, y, z of a table with a header; lines that are empty or begin with # are passed over."""
-    lines = [(n, line) for n, line in enumerate(content.splitlines(), 1) if line.strip() and line.lstrip()[0] != "#"]
-    rows = list(csv.reader(io.StringIO("\n".join(line for _, line in lines)), skipinitialspace=True))
-    header = [name.strip().lower() for name in rows[0]] if rows else []
+        table = read_table(file)
+    except MeasurementError as error:
+        raise SweepError(str(error)) from error
+    header = [name.lower() for name in table.header]
     missing = [name for name in "xyz" if name not in header]
     if missing:
-        raise SweepError(f"{file}: there is no column {', '.join(missing)}; the first line must name x, y, z")
-    if len(rows) == 1:
-        raise SweepError(f"{file}: there are no points under the header")
-    columns = [header.index(name) for name in "xyz"]
-    names = [f"{file}, line {number}" for number, _ in lines[1:]]
-    cells = [[row[k] if k < len(row) else "" for k in columns] for row in rows[1:]]
-    return np.array([_numbers(row, name) for row, name in zip(cells, names, strict=True)]), names
+        raise SweepError(f"{table.source}: there is no column {', '.join(missing)}; the first line must name x, y, z")
+    columns, comma = [header.index(name) for name in "xyz"], table.separator != ","
+    names = [f"{table.source}, line {line}" for line in table.lines]
+    cells = [[row[k] for k in columns] for row in table.rows]
+    return np.array([_numbers(row, comma, name) for row, name in zip(cells, names, strict=True)]), names
 
 
-def _numbers(cells: Sequence[str], name: str) -> list[float]:
-    try:
-        numbers = [float(cell) for cell in cells]
-    except ValueError:
-        numbers = [np.nan]
-    if not np.isfinite(numbers).all():
-        raise SweepError(f"{name}: {','.join(cells)!r} is not three finite numbers x, y, z")
+def _numbers(cells: Sequence[str], comma: bool, name: str) -> list[float]:
+    """Finite numbers in cells, in which a ``comma`` may be a decimal sign."""
+    numbers = [value for cell in cells if (value := number_of(cell, comma)) is not None and math.isfinite(value)]
+    if len(numbers) < len(cells):
+        raise SweepError(f"{name}: '{(';' if comma else ',').join(cells)}' is not three finite numbers x, y, z")
     return numbers
 
 

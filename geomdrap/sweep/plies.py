@@ -34,25 +34,6 @@ class Ply:
     drape: Drape
 
 
-def parse_plies(text: str) -> tuple[float, ...]:
-    """Angles of plies, degrees, as written: ``0,45,-45,90``, the tool's side first; the same may come again.
-
-    Raises DrapeError for what is no finite number, and for more plies than can be meant.
-    """
-    angles = []
-    for part in text.split(","):
-        try:
-            angle = math.nan if "_" in part else float(part)
-        except ValueError:
-            angle = math.nan
-        if not math.isfinite(angle):
-            raise DrapeError(f"plies {text!r}: {part!r} is not a number of degrees; write them as in 0,45,-45,90")
-        angles.append(angle)
-    if len(angles) > MOST:
-        raise DrapeError(f"{len(angles)} plies are more than the {MOST} that can be stacked")
-    return tuple(angles)
-
-
 def lay_plies(
     surface: Surface,
     angles: Sequence[float],
@@ -71,8 +52,11 @@ def lay_plies(
     ``thickness`` mm over the cosine of their shear: a sheared ply keeps its volume. Where a ply is bare it adds
     nothing. ``angles`` count from the heading ``angle``; the origin of a ply is the point of its surface nearest to
     that of the ply below. ``laid`` goes to ``geomdrap.drape``, the pitch chosen for the first ply to all.
-    Raises DrapeError for a thickness that is not positive, and where the surface of the plies folds.
+    Raises DrapeError for a thickness that is not positive, for more plies than can be meant, and where the surface of
+    the plies folds.
     """
+    if len(angles) > MOST:
+        raise DrapeError(f"{len(angles)} plies are more than the {MOST} that can be stacked")
     if not (math.isfinite(thickness) and thickness > 0.0):
         raise DrapeError(f"the thickness of a ply must be a positive number of mm, not {thickness}")
     plies: list[Ply] = []

@@ -94,7 +94,8 @@ class LocalPool:
             context.set_forkserver_preload([__name__])
         with _environment_of_workers():
             executor = ProcessPoolExecutor(self.workers, context, _begin, (plugin_files(self.job), self.blob))
-            executor.submit(_ready)  # starts the workers
+            for _ in range(self.workers):  # each starts a worker, as none of them is idle yet
+                executor.submit(_ready)
         return executor
 
     def submit(self, case: Case) -> Future[Row]:

@@ -28,3 +28,12 @@ def pareto_front(rows: Sequence[Row], names: Sequence[str]) -> tuple[Row, ...]:
     values = np.round(np.array([[c.of(row) / c.same(row) for c in criteria] for row in good]))
     beaten = [bool(((values <= v).all(axis=1) & (values < v).any(axis=1)).any()) for v in values]
     return tuple(row for row, is_beaten in zip(good, beaten, strict=True) if not is_beaten)
+
+
+def best_of_origins(rows: Sequence[Row]) -> list[Row]:
+    """The best of ``rows``, ranked, at each origin at which one could be draped."""
+    found: dict[object, Row] = {}
+    for row in rows:
+        if row.reason is None:
+            found.setdefault(row.asked, row)
+    return list(found.values())

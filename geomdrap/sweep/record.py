@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +52,23 @@ class Record:
     def close(self) -> None:
         """Close the file."""
         self.file.close()
+
+
+def set_aside(path: Path) -> Path | None:
+    """Rename a file that holds more than our first line, so that no row is lost; its new name, the first free one.
+
+    None where there is no such file. Raises SweepError where it cannot be renamed.
+    """
+    try:
+        lines = path.read_bytes().splitlines()
+        if not lines or (len(lines) == 1 and lines[0].startswith(_line({"schema": SCHEMA}).encode()[:-2])):
+            return None
+        names = (path.with_name(f"{path.stem}-{number}{path.suffix}") for number in count(1))
+        return path.rename(next(name for name in names if not name.exists()))
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise _cannot_write(path, error) from error
 
 
 def header(job: Job) -> dict[str, Any]:

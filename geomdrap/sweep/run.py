@@ -66,8 +66,9 @@ def run(
 ) -> Sweep:
     """Drape all cases of a job and rank them.
 
-    ``jobs`` processes of this machine, or through any ``executor``, or on a ``pool``. ``done`` are rows of an earlier
-    run: their cases are not draped again. ``on_row`` gets each new row as it comes.
+    ``jobs`` processes of this machine, or through any ``executor``, or on a ``pool``, which is closed at the end.
+    A script with ``jobs`` above 1 calls this under ``if __name__ == "__main__":``, as its processes import it.
+    ``done`` are rows of an earlier run: their cases are not draped again. ``on_row`` gets each new row as it comes.
     Raises SweepError where there is no case, or an objective or criterion is unknown.
     """
     wanted, names = Objective.parse(objective), parse_criteria(",".join(criteria))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from geomdrap.blind import sliding
 from geomdrap.blind.closing import closed
 from geomdrap.blind.lines import generators
 from geomdrap.blind.ply import lay
@@ -181,16 +182,26 @@ def test_yarns_that_slip_altogether_lie_on_circles_of_latitude_of_a_sphere():
     assert less < 0.35 * turn and turn < 0.02
 
 
+def test_a_row_of_equations_of_a_wrong_shape_is_no_end_of_the_ply(monkeypatch):
+    banded = sliding._banded
+    monkeypatch.setattr(sliding, "_banded", lambda *given: banded(*given)[:, :-1])
+    with pytest.raises(ValueError, match=r"(?i)shape|dimension|size|compatible"):
+        lay(sphere(100.0, 60.0), Recipe(slip=1.0), 8.0)
+
+
 @pytest.mark.parametrize("part", ["dome", "saddle", "double-bump"])
 def test_nets_that_slip_agree_whatever_their_cells(part):
-    """Also where yarns nearly meet at an angle; what is too sharp for the cells is left out."""
+    """Also where yarns nearly meet at an angle; what is too sharp for the cells is left out.
+
+    The finer net is four times as fine, so that neither was left out by its difference from the other.
+    """
     tool = draw_tool(part, np.random.default_rng(3))
-    coarse, fine = (lay(tool, Recipe(start=(5.0, -6.0), angle=35.0, slip=0.86), side) for side in (8.0, 4.0))
     shears = []
-    for ply, step in ((coarse, 2), (fine, 4)):
-        middle = len(ply.u) // 2
-        shears.append(node_shear(ply.points)[middle - 9 * step : middle + 9 * step + 1 : step][:, middle - 9 * step : middle + 9 * step + 1 : step])
+    for side in (8.0, 2.0):
+        ply = lay(tool, Recipe(start=(5.0, -6.0), angle=35.0, slip=0.86), side)
+        every = int(16.0 / side)
+        near = len(ply.u) // 2 + every * np.arange(-9, 10)
+        shears.append(node_shear(ply.points)[np.ix_(near, near)])
     change = shears[0] - shears[1]
     assert np.isfinite(change).sum() > 150
-    assert np.nanmax(np.abs(change)) < 0.65
     assert np.sqrt(np.nanmean(change**2)) < 0.12

@@ -58,12 +58,14 @@ def test_options_arrive_as_values(run: Run, asked: dict[str, Any]) -> None:
             "--flip",
             "--project",
         ),
+        *("--cut", "slit.csv", "--cut", "dart.csv"),
         *("--effect", "slip:coefficient=0.2", "--effect", "bridging:radius=9", "--model", "m.toml", "--plugin", "p.py"),
         *SOME,
     )
     assert result.exit_code == 0, result.stderr
     asked.pop("result")
     assert asked == {
+        "cuts": (Path("slit.csv"), Path("dart.csv")),
         "part": Path("a.stl"),
         "origin": (-5.0, 5.0, 84.4),
         "angle": -45.0,

@@ -31,6 +31,19 @@ def test_a_roll_as_wide_as_the_pattern_is_said_to_need_no_seam(run: Callable[...
     assert "5000 mm wide: one strip, no seam" in done.stdout
 
 
+def test_each_ply_of_a_stack_is_laid_from_strips_of_its_own(run: Callable[..., Result]) -> None:
+    stack = (*DRAPE, "--plies", "0,45", "--roll-width", "250", "-o", "stack")
+    done = run(*stack, "--outputs", "json,cut", "-q", "--json")
+    assert done.exit_code == 0, done.output
+    rolls = [ply["roll"] for ply in json.loads(done.stdout)["plies"]]
+    assert [len(roll["strips"]) for roll in rolls] == [2, 2]
+    assert rolls[0]["seams"][0]["length"] < rolls[1]["seams"][0]["length"]
+    assert "STRIP2" in Path("stack/ply-2/cut.dxf").read_text(encoding="utf-8")
+    used = sum(roll["length"] for roll in rolls)
+    words = run(*DRAPE, "--plies", "0,45", "--roll-width", "250", "--outputs", "none").stdout
+    assert f"strips of a roll 250 mm wide: 2, 2; {used:.1f} mm used" in words
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -41,7 +54,8 @@ def test_a_roll_as_wide_as_the_pattern_is_said_to_need_no_seam(run: Callable[...
         (("--roll-width", "100", "--seam-overlap", "90"), "an overlap of 90 mm leaves less of a roll 100 mm wide"),
         (("--roll-width", "100", "--seam-overlap", "-1"), "-1 is not a finite number of at least 0"),
         (("--seam-overlap", "5"), "--seam-overlap is of strips of a roll: give --roll-width, too"),
-        (("--roll-width", "100", "--plies", "0,90"), "--roll-width takes one ply: leave --plies out"),
+        (("--seam-overlap", "5", "--plies", "0,90"), "give --roll-width, too"),
+        (("--roll-width", "9", "--plies", "0,90"), "a roll 9 mm wide is narrower than the pitch of 15 mm"),
     ],
 )
 def test_a_roll_that_cannot_be_is_refused_in_one_sentence(

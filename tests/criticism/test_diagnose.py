@@ -17,8 +17,10 @@ PARAMETERS = {  # names in the answers, and ours
     "yarn-extension": {"strain_warp": ("stretch", 0, 1.0), "strain_weft": ("stretch", 1, 1.0)},
     "tension-gradient": {"k_warp": ("drift", 0, 1e3), "k_weft": ("drift", 1, 1e3)},
     "weave-skew": {"skew": ("skew", None, 1.0)},
+    "steering": {"curvature_warp": ("steer", 0, 1e3), "curvature_weft": ("steer", 1, 1e3)},
     "slip": {"coefficient": ("slip", None, 1.0)},
     "thickness": {"offset": ("offset", None, 1.0)},
+    "bridging": {"radius": ("bridge", None, 1.0)},
     "springback": {"fraction": ("recovery", None, 1.0)},
     "shear-stiffness": {"ratio": ("stiffness", None, 1.0)},
 }
@@ -64,7 +66,7 @@ def test_after_improvement_the_held_out_error_is_at_the_noise(case):
 @pytest.mark.slow
 @pytest.mark.skipif(not CASES, reason="the measurements with a hidden effect are not beside the repository")
 def test_true_values_lie_within_their_intervals():
-    inside = []
+    inside, outside = [], []
     for case in CASES:
         truth = json.loads((SETS / case / "truth.json").read_text())
         for effect in improved(case).diagnosis.tried:
@@ -73,10 +75,11 @@ def test_true_values_lie_within_their_intervals():
                 if key is not None:
                     exact = truth["effect"][key] if k is None else truth["effect"][key][k]
                     low, high = value.interval
-                    inside.append(low <= factor * exact <= high)
-    assert len(inside) >= 9
-    # bridging and the weft of steering lie outside by what facets and other definitions make; 0.85 is not shown
-    assert np.mean(inside) >= 0.75
+                    (inside if low <= factor * exact <= high else outside).append(f"{effect.name} {value.name}")
+    assert len(inside) >= 11
+    # the ball's radius comes out as 63.1 ± 1.8 mm for 60, for a reason that is not found yet; the angle of locking is
+    # left out: a locked net rests in one of many states of like energy
+    assert set(outside) <= {"bridging radius"}
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,10 @@ import pytest
 
 import geomdrap as gd
 from geomdrap.blind import make
+from geomdrap.criticism.before_after import before_and_after
+from geomdrap.criticism.experiment import Layup
+from geomdrap.criticism.prepare import prepare
+from geomdrap.criticism.story import table_rows
 
 CHEAP = ("yarn-extension", "weave-skew", "springback")
 
@@ -61,6 +65,23 @@ def test_the_noise_of_directions_may_be_given_or_stand_in_the_table(tmp_path):
     a, b, c = (row(d, "weave-skew").values[0] for d in (first, second, third))
     assert (a.value, a.sigma) == pytest.approx((b.value, b.sigma), rel=1e-9)
     assert c.sigma > 1.5 * a.sigma
+    # the pictures of a diagnosis and its words on what is left stand on the same noise
+    for d, told in ((first, 0.5), (third, 1.0)):
+        for comparison in before_and_after(d):
+            assert (comparison.noise_turn.source, comparison.noise_turn.typical) == ("given", pytest.approx(told))
+
+
+def test_compare_and_diagnose_take_the_same_noise_of_directions(tmp_path):
+    surface, measurement, told = skewed(tmp_path, "directions")
+    compared = gd.compare(surface, measurement, **told)
+    layup = Layup(told["origin"], told["angle"])
+    experiment, notes = prepare(surface, measurement, layup, told["sigma_xyz"], told["sigma_shear"])
+    own = np.isin(np.array(experiment.channels)[experiment.channel_of()], ("warp", "weft"))
+    # the nets have other pitches, and with them the residuals whose neighbours are compared
+    assert np.unique(experiment.noise[own]) == pytest.approx(compared.noise_turn.typical, rel=0.05)
+    assert compared.noise_turn.typical == pytest.approx(told["sigma_shear"] / np.sqrt(2.0), rel=0.3)
+    assert compared.noise_turn.source == "neighbour differences of the residual"
+    assert any("noise of the direction" in note and "neighbour" in note for note in notes)
 
 
 def assert_same(first, second, close):
@@ -114,3 +135,7 @@ def test_an_effect_that_takes_long_is_looked_at_once_where_there_is_nothing_for_
     d = gd.diagnose(surface, m, **told, effects=("weave-skew", "shear-stiffness"))
     assert d.verdict == "weave-skew"
     assert len(drapes) <= 3
+    # and both the table and the JSON say so of it, and of it alone
+    assert [(t.name, t.looked_at_only) for t in d.tried] == [("weave-skew", False), ("shear-stiffness", True)]
+    assert [row[1] == "looked at only" for row in table_rows(d)[1:]] == [False, True]
+    assert [e["looked_at_only"] for e in d.as_dict()["effects"]] == [False, True]

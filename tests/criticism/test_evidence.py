@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 from geomdrap.criticism.evidence import Evidence, among_all, chance, rivals
+from geomdrap.criticism.fit import Fit
+from geomdrap.criticism.model import Fitted, Model
+from geomdrap.criticism.search import _in_range
 
 GOOD = Evidence("slip", 60.0, 1, 1e-14, 1e-13, 0.9, 0.5, True)
 
@@ -41,3 +44,13 @@ def test_those_close_to_the_best_are_its_rivals_and_others_are_not():
 def test_of_two_with_the_same_gain_the_one_with_fewer_unknowns_comes_first():
     wide = replace(GOOD, name="wide", unknowns=3, gain=61.0)
     assert rivals([wide, GOOD])[0] == "slip"
+
+
+@pytest.mark.parametrize(("effect", "acts"), [("shear-stiffness", True), ("springback", False)])
+def test_only_what_acts_at_once_need_not_be_clearly_off_its_neutral_value(effect, acts):
+    model = Model((effect,))
+    values = np.append(np.zeros(3), 1e-4)
+    found = Fitted(model, Fit(values, np.zeros(1), np.zeros((1, 4)), 0.0))
+    assert _in_range(found, np.full(4, 1e-3)) == acts
+    assert _in_range(found, np.full(4, 1e-5))
+    assert not _in_range(replace(found, fit=replace(found.fit, values=model.neutral)), np.full(4, 1e-5))

@@ -39,10 +39,9 @@ def test_a_curved_model_is_found_from_noisy_values_as_scipy_finds_it():
     exact = least_squares(lambda p: y - curve(p), [1.0, 0.5]).x
     got = fit(curve, y, lambda a: a / 0.02, np.array([1.0, 0.5]), STEPS, *WIDE)
     spread = np.sqrt(np.diag(np.linalg.inv(got.slopes.T @ got.slopes / 0.02**2)))
+    # a step that promises less than 0.05 of chi-square is not taken, and sqrt(0.05) of a spread gains as much
     assert (np.abs(got.values - exact) < 0.2 * spread).all()
-    assert got.chi2 == pytest.approx(
-        (((y - curve(exact)) / 0.02) ** 2).sum(), abs=0.1
-    )  # a step that promises less is not taken
+    assert got.chi2 == pytest.approx((((y - curve(exact)) / 0.02) ** 2).sum(), abs=0.1)
 
 
 def test_values_stay_within_their_bounds_and_the_rest_is_the_best_there():

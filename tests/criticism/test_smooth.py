@@ -7,8 +7,10 @@ import pytest
 from made_parts import cube
 
 import geomdrap as gd
+from geomdrap.criticism import smooth
+from geomdrap.criticism.experiment import Layup
+from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.smooth import smoothed
-from geomdrap.surface import samples
 
 
 def off_sphere(surface, radius):
@@ -47,9 +49,28 @@ def test_flats_stay_flat_up_to_their_edges():
     assert smoothed(box) is box
 
 
-def test_a_part_that_is_fine_already_is_left_alone():
-    fine = samples.build("hemisphere", facets=40_000)
-    assert smoothed(fine) is fine
+@pytest.mark.parametrize(("half", "same"), [(5.0, True), (6.5, False)])
+def test_a_curved_part_whose_facets_lie_within_a_micron_of_it_is_left_alone(half, same):
+    # a chord c of the sphere lies c²/8R below it: 0.0008 mm for the longest of the first part, 0.0013 of the second
+    fine = cap(half=half)
+    assert (smoothed(fine) is fine) == same
+
+
+@pytest.mark.parametrize(("most", "same"), [(4, False), (3, True)])
+def test_a_part_that_would_have_too_many_facets_is_left_as_it_is(monkeypatch, most, same):
+    part = cap()
+    monkeypatch.setattr(smooth, "MOST_FACETS", most * len(part.triangles))
+    assert (smoothed(part) is part) == same
+
+
+@pytest.mark.parametrize(("most", "said"), [(4, False), (3, True)])
+def test_a_part_that_is_not_smoothed_for_its_many_facets_is_named_in_a_note(monkeypatch, most, said):
+    part = cap()
+    monkeypatch.setattr(smooth, "MOST_FACETS", most * len(part.triangles))
+    net = gd.drape(part, (0.0, 0.0, 60.0), 0.0, 5.0)
+    points = net.points[np.isfinite(net.points).all(axis=-1)]
+    notes = prepare(part, gd.Measurement("made", points), Layup((0.0, 0.0, 60.0), 0.0), sigma_xyz=0.1)[1]
+    assert any(f"on the {len(part.triangles)} facets of the part itself" in note for note in notes) == said
 
 
 def test_the_smooth_part_looks_the_same_way():
@@ -61,8 +82,9 @@ def test_the_smooth_part_looks_the_same_way():
 @pytest.mark.parametrize("heading", [0.0, 30.0])
 def test_a_net_on_few_facets_comes_nearer_to_that_on_many(heading):
     seed = (3.1, -2.3, 60.0)
-    nets = [gd.drape(s, seed, heading, 5.0, reach=(25.0, 25.0), project=True) for s in (cap(), smoothed(cap()), cap(160))]
+    parts = (cap(), smoothed(cap()), cap(160))
+    nets = [gd.drape(part, seed, heading, 5.0, reach=(25.0, 25.0), project=True) for part in parts]
     u, v = (a.ravel() for a in np.meshgrid([-20.0, -10.0, 10.0, 20.0], [-20.0, 10.0, 20.0], indexing="ij"))
     places = [net.interpolate(u, v)[0] for net in nets]
-    rough, smooth = (np.sqrt(np.mean((p - places[2]) ** 2)) for p in places[:2])
-    assert smooth < 0.5 * rough
+    before, after = (np.sqrt(np.mean((p - places[2]) ** 2)) for p in places[:2])
+    assert after < 0.5 * before

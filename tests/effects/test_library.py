@@ -49,6 +49,7 @@ def test_an_effect_says_what_it_is(name):
     assert effect.summary.endswith(".")
     assert effect.stage in ("surface", "placement", "fabric", "net")
     assert set(effect.confounded_with) <= set(NAMES)
+    assert effect.acts_at_once == (name == "shear-stiffness")
     for p in effect.parameters:
         assert p.low <= p.neutral <= p.high
         assert p.low <= p.typical <= p.high
@@ -101,11 +102,29 @@ def test_a_typical_effect_changes_something_and_is_named_by_the_net(name):
         ("locking", "e.g. locking:angle=40"),
         ("placement", "a value of du or dv or dangle: give one, e.g. placement:du=2"),
         ("crossing-slip:onset=10", "a value of share: give one, e.g. crossing-slip:share=0.15"),
+        ("crossing-slip", "a value of share: give one, e.g. crossing-slip:share=0.15"),
     ],
 )
 def test_what_cannot_be_meant_is_refused_with_a_sentence(text, words):
     with pytest.raises(gd.GeomdrapError, match=words):
         gd.effects.parse(text)
+
+
+def test_an_effect_that_says_itself_when_it_does_nothing_is_refused_then():
+    @gd.effects.register
+    class Grip(gd.Effect):
+        name = "grip"
+        parameters = (gd.Parameter("force", "N", 0.0, 10.0, 2.0, 0.0, "of the clamp"),)
+
+        @property
+        def is_neutral(self):
+            return self.values["force"] < 1.0
+
+    assert gd.effects.parse("grip:force=2").values == {"force": 2.0}
+    with pytest.raises(gd.EffectError, match="grip does nothing without a value of force"):
+        gd.effects.parse("grip")
+    with pytest.raises(gd.EffectError, match="grip does nothing with these values; give others"):
+        gd.effects.parse("grip:force=0.5")
 
 
 def test_values_are_read_as_written_and_the_rest_is_neutral():

@@ -125,7 +125,7 @@ def test_pages_pictures_and_the_report_are_written_with_seams(bare_result, resul
     report_html.write(result, tmp_path / "report.html", "")
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "<h2>Roll</h2>" in page
-    assert '"seams": "M-150,' in page
+    assert f'"seams": [{seam_levels(result)[0]:.6f}'.rstrip("0") in page
     report_html.write(bare_result, tmp_path / "bare.html", "")
     assert "<h2>Roll</h2>" not in (tmp_path / "bare.html").read_text(encoding="utf-8")
 

@@ -8,8 +8,9 @@ from made_parts import bumpy_sheet
 
 import geomdrap as gd
 from geomdrap.fields.contour import is_simple, signed_area, winding
+from geomdrap.fields.joints import groups
 from geomdrap.fields.overlap import LEAST, common_area, doubled, overlapping_pairs
-from geomdrap.fields.slit import chains_with, loose
+from geomdrap.fields.slit import bridges, chains_with, loose
 
 EVERYWHERE = np.array([-1e3, -1e3]), np.array([1e3, 1e3])
 
@@ -74,6 +75,22 @@ def test_loose_ends_of_a_seam_are_taken_away_up_to_where_it_is_held():
     held[[0, 3, 5]] = True  # 0-1-2-3 runs from rim to rim, 4 hangs on it, 5-6 on the rim
     assert loose(a, b, held).tolist() == [False, False, False, True, True]
     assert chains_with(np.array([0, 0, 1, 0, 0], bool), a, b, 7).tolist() == [True] * 4 + [False]
+
+
+def test_a_loop_at_the_inner_end_of_a_seam_stays_without_the_way_to_it():
+    a, b = np.array([0, 1, 2, 3, 4]), np.array([1, 2, 3, 4, 2])  # 0-1-2 leads from the rim to the loop 2-3-4
+    held = np.array([True, False, False, False, False])
+    assert loose(a, b, held).tolist() == [True, True, False, False, False]
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_bridges_are_the_edges_without_which_a_graph_falls_apart(seed):
+    rng = np.random.default_rng(seed)
+    nodes = int(rng.integers(2, 15))
+    a, b = rng.integers(0, nodes, (2, int(rng.integers(1, 20))))  # loops and doubles too
+    pieces = [len(np.unique(groups(np.delete(a, [n]), np.delete(b, [n]), nodes))) for n in range(len(a))]
+    whole = len(np.unique(groups(a, b, nodes)))
+    assert bridges(a, b, nodes).tolist() == [count > whole for count in pieces]
 
 
 @pytest.mark.parametrize("seed", range(24))

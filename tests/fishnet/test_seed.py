@@ -175,6 +175,16 @@ def test_a_seed_on_a_vertex_or_an_edge_gives_the_same_net_as_one_beside_it(seed)
         np.testing.assert_allclose(net.points[present], flat[present], atol=1e-6)
 
 
+def test_a_vertex_written_with_four_decimals_is_that_vertex():
+    part = bumpy_sheet()
+    number = int(np.linalg.norm(part.points - part.centroid, axis=1).argmin())
+    written = np.round(part.points[number], 4)
+    assert not np.array_equal(written, part.points[number])
+    exact, near = gd.drape(part, f"vertex:{number}", 20.0, 4.0), gd.drape(part, written, 20.0, 4.0)
+    np.testing.assert_allclose(near.points, exact.points, atol=1e-9)  # the fans are counted from other facets
+    np.testing.assert_array_equal(near.origin, part.points[number])
+
+
 def test_at_the_tip_of_a_cone_opposite_yarns_are_one_straightest_line():
     surface = pyramid(12, 0.5, 100.0, 20)
     net = gd.drape(surface, (0.0, 0.0, 0.0), 20.0, 4.0, (40.0, 40.0))

@@ -8,7 +8,7 @@ import pytest
 import geomdrap as gd
 from geomdrap.measurement.local import deviations
 from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
-from geomdrap.measurement.noise import noise_of, pooled, repeats_of
+from geomdrap.measurement.noise import noise_of, noise_of_directions, pooled, repeats_of
 
 NOWHERE = np.full((40, 2), np.nan)
 
@@ -120,3 +120,28 @@ def test_the_pitch_divides_the_spacing():
     assert pitch_for_marks(16.0, 20.0) == 16.0
     assert pitch_for_marks(None, 5.0) == 5.0
     assert pitch_for_marks(0.6, 5.0) == pytest.approx(4.8)
+
+
+def test_directions_take_the_noise_of_the_shear_only_where_nothing_else_says_theirs():
+    turn = np.random.default_rng(0).normal(0.0, 0.4, (400, 2))
+    group = np.repeat(np.arange(200), 2)
+    nowhere, places = np.full((400, 2), np.nan), _grid()
+    given, said = noise_of_directions(None, 0.7, 3.0, turn, None, places)
+    assert (given.typical, said) == (0.7, ())
+    repeats, said = noise_of_directions(None, None, 3.0, turn, group, places)
+    assert (repeats.source, said) == ("replicates", ())
+    neighbours, said = noise_of_directions(None, None, 3.0, turn, None, places)
+    assert neighbours.typical == pytest.approx(0.4, rel=0.1)
+    assert said == ()
+    of_shear, (said,) = noise_of_directions(None, None, 3.0, turn, None, nowhere)
+    assert of_shear.typical == pytest.approx(3.0 / np.sqrt(2.0))
+    assert "noise of the shear over √2" in said
+    column = np.where(np.arange(400) < 200, 0.5, np.nan)
+    filled, (said,) = noise_of_directions(column, None, 3.0, turn, None, nowhere)
+    np.testing.assert_allclose(filled.sigma[[0, -1]], [0.5, 3.0 / np.sqrt(2.0)])
+    assert noise_of_directions(None, None, None, turn, None, nowhere)[0].sigma is None
+
+
+def test_a_noise_of_the_shear_that_is_none_is_refused_for_directions_too():
+    with pytest.raises(gd.MeasurementError, match="sigma_shear"):
+        noise_of_directions(None, None, -1.0, np.zeros((4, 2)), None, np.zeros((4, 2)))

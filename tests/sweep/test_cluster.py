@@ -52,6 +52,11 @@ class Cluster:
         where = str(self.folder / f"worker-{len(self.processes)}")
         return self.begin("dask_worker", self.address, "--nthreads", "1", "--no-nanny", "--local-directory", where)
 
+    def wait_for_workers(self, count: int) -> None:
+        """Wait until so many are there, however busy the machine is."""
+        with distributed.Client(self.address, timeout=60, set_as_default=False) as client:
+            client.wait_for_workers(count, timeout=60)
+
     def _address(self) -> str:
         file = self.folder / "at.json"
         for _ in range(600):
@@ -109,6 +114,7 @@ def test_a_case_that_kills_every_worker_is_a_row_with_the_reason(cluster: Cluste
     for _ in range(2):
         where = ("--local-directory", str(tmp_path / f"nanny-{len(cluster.processes)}"))
         cluster.begin("dask_worker", cluster.address, "--nthreads", "1", *where)
+    cluster.wait_for_workers(2)
     job = Job(bumpy_sheet(), pitch=8.0, effects=(Deadly(os.getpid()),))
     rows = run(job, CASES[:9], pool=ClusterPool(job, cluster.address)).rows
     assert [row.angle for row in rows if row.reason is not None] == [30.0]
@@ -118,6 +124,7 @@ def test_the_command_drapes_on_the_scheduler_with_effects_of_the_users_own(
     cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     cluster.worker()
+    cluster.wait_for_workers(1)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.py").write_text(
         "import geomdrap as gd\nclass Mine(gd.Effect):\n    name = 'mine'\n    def on_fabric(self, fabric):\n"

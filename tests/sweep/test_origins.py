@@ -11,6 +11,7 @@ from made_parts import bumpy_sheet, square_tube
 import geomdrap as gd
 from geomdrap.surface import shapes
 from geomdrap.sweep import locate_origins
+from geomdrap.sweep.origins import read_points
 
 
 def test_a_grid_lies_in_the_middles_of_equal_fields_and_on_the_part() -> None:
@@ -78,6 +79,12 @@ def test_centroid_points_vertices_and_a_table_may_be_mixed_and_come_once(tmp_pat
     assert points[2][:2] == pytest.approx((0.0, 0.0), abs=6.0)
 
 
+def test_a_table_may_have_semicolons_and_decimal_commas_as_measured_ones_do(tmp_path: Path) -> None:
+    table = tmp_path / "seeds.csv"
+    table.write_bytes("\ufeffx;y;z\r\n1,5;-2,25;0\r\n".encode("utf-16-le"))
+    assert read_points(table).tolist() == [[1.5, -2.25, 0.0]]
+
+
 def test_an_origin_off_the_part_is_refused_with_its_line_unless_projected(tmp_path: Path) -> None:
     part = bumpy_sheet()
     table = tmp_path / "seeds.csv"
@@ -91,11 +98,14 @@ def test_an_origin_off_the_part_is_refused_with_its_line_unless_projected(tmp_pa
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        ("", "no column x, y, z"),
+        ("", "seeds.csv is empty: it needs a header line"),
         ("a,b\n1,2\n", "no column x, y, z"),
         ("x,y\n1,2\n", "no column z"),
-        ("x,y,z\n", "no points under the header"),
-        ("x,y,z\n1,2\n", "line 2: '1,2,' is not three finite numbers"),
+        ("0,0,0\n1,2,3\n", "line 1: the header is missing"),
+        ("x,y,z\n", "seeds.csv has a header but no rows"),
+        ("x,y,z\n1,2\n", "line 2: the row has 2 cells, but the header names 3 columns"),
+        ("x,y,z\n1,2,\n", "line 2: '1,2,' is not three finite numbers"),
+        ("x,y,z\n1,2,3_0\n", "line 2: '1,2,3_0' is not three finite numbers"),
         ("x,y,z\n1,2,nan\n", "line 2: '1,2,nan' is not three finite numbers"),
     ],
 )

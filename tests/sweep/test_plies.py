@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 
+import click
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
@@ -13,8 +15,11 @@ from made_parts import bumpy_sheet
 
 import geomdrap as gd
 from geomdrap.cli import cli
+from geomdrap.cli.drape import THICKNESS
+from geomdrap.cli.drape import drape as drape_command
+from geomdrap.cli.plies import by_plies
 from geomdrap.surface import shapes
-from geomdrap.sweep import lay_plies, parse_plies
+from geomdrap.sweep import lay_plies
 from geomdrap.sweep.plies import thickness_factor
 
 
@@ -92,11 +97,9 @@ def test_a_thickness_that_is_not_positive_is_refused(thickness: float) -> None:
         lay_plies(bumpy_sheet(), [0.0], thickness)
 
 
-def test_plies_are_read_in_their_order_and_may_come_again() -> None:
-    assert parse_plies("0,45,-45, 90,0") == (0.0, 45.0, -45.0, 90.0, 0.0)
-    for text in ("", "0,,90", "up", "nan", "1_0"):
-        with pytest.raises(gd.DrapeError, match="0,45,-45,90"):
-            parse_plies(text)
+def test_more_plies_than_can_be_meant_are_refused() -> None:
+    with pytest.raises(gd.DrapeError, match="1001 plies are more than the 1000"):
+        lay_plies(bumpy_sheet(), [0.0] * 1001, 0.1)
 
 
 @pytest.fixture
@@ -126,15 +129,86 @@ def test_the_command_writes_a_folder_per_ply(command: Callable[..., Result], tmp
     assert json.loads((tmp_path / "drape" / "plies.json").read_text())["plies"][0]["ply_angle"] == 0.0
 
 
+@pytest.mark.parametrize(
+    ("after", "words"),
+    [
+        (0, "interrupted; nothing was written"),
+        (1, "interrupted; 1 of 3 plies are written, in drape/ply-1, and no plies.json of them"),
+        (2, "interrupted; 2 of 3 plies are written, in drape/ply-1 to ply-2, and no plies.json of them"),
+    ],
+)
+def test_ctrl_c_says_which_plies_are_written(
+    command: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, after: int, words: str
+) -> None:
+    from geomdrap.export import plies_outputs
+
+    def write_all(drape: object, folder: Path, *more: object, **named: object) -> dict[str, Path]:
+        if folder.name == f"ply-{after + 1}":
+            raise KeyboardInterrupt
+        return plain(drape, folder, *more, **named)
+
+    plain = plies_outputs.write_all
+    monkeypatch.setattr(plies_outputs, "write_all", write_all)
+    result = command("--plies", "0,45,-45", "--outputs", "json")
+    assert result.exit_code == 130
+    assert result.stderr.splitlines()[-1] == f"Error: {words}".replace("drape/", f"{Path('drape')}{os.sep}")
+    there = sorted(path.name for path in (tmp_path / "drape").iterdir()) if after else []
+    assert there == [f"ply-{n}" for n in range(1, after + 1)]
+
+
+def test_what_is_said_of_several_plies_is_said_once_with_their_numbers() -> None:
+    assert by_plies([("a", "b"), ("b",), (), ("b", "b", "c")]) == ["ply 1: a", "plies 1, 2, 4: b", "ply 4: c"]
+    assert by_plies([(), ()]) == []
+
+
+def test_plies_and_files_of_an_earlier_run_are_warned_of(command: Callable[..., Result]) -> None:
+    command("--plies", "0,45,90", "--outputs", "json,dxf")
+    command("--outputs", "json")
+    result = command("--plies", "0", "--outputs", "json", "--json")
+    left = [
+        "drape.json, ply-2, ply-3 in drape are of an earlier run: remove them, or use another folder (-o)",
+        f"flat.dxf in {Path('drape', 'ply-1')} is of an earlier run: remove it, or use another folder (-o)",
+    ]
+    assert [line for line in result.stderr.splitlines() if "earlier" in line] == [f"Warning: {text}" for text in left]
+    assert json.loads(result.stdout)["warnings"][-2:] == left
+    assert "earlier" not in command("--plies", "0", "--outputs", "json", "-o", "fresh").stderr
+
+
+def test_elements_that_get_no_ply_are_warned_of_with_the_plies(command: Callable[..., Result]) -> None:
+    result = command("--plies", "0,45", "--outputs", "abaqus", "--blank", "60x60")
+    lines = [line for line in result.stderr.splitlines() if "have no ply" in line]
+    assert lines
+    assert lines[0].startswith("Warning: pl")
+
+
+@pytest.mark.parametrize("asked", [("drape", "--plies", "0"), ("sweep",), ("optimize",)])
+def test_a_pitch_that_there_is_no_room_for_is_refused_before_anything_is_draped(
+    command: Callable[..., Result], asked: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("geomdrap.fields.pieces.MOST_PIECES", 1000)
+    name, *more = asked
+    result = CliRunner().invoke(cli, [name, "saddle.stl", *more, "--pitch", "2"])
+    assert result.exit_code == 2
+    assert "a pitch of 2 mm is too small for saddle.stl" in result.stderr
+    assert "Draping" not in result.stderr
+
+
 def test_the_summary_has_a_line_per_ply(command: Callable[..., Result]) -> None:
-    lines = command("--plies", "0,90", "--outputs", "none").stdout.splitlines()
-    assert [line.split()[:2] for line in lines if line.lstrip()[:1].isdigit()] == [["1", "0"], ["2", "90"]]
+    lines = command("--plies", "0,-45, 0", "--outputs", "none").stdout.splitlines()
+    assert [line.split()[:2] for line in lines if line.lstrip()[:1].isdigit()] == [
+        ["1", "0"],
+        ["2", "-45"],
+        ["3", "0"],
+    ]
 
 
 @pytest.mark.parametrize(
     ("asked", "words"),
     [
-        (("--plies", "0,up"), "'up' is not a number of degrees"),
+        *(
+            (("--plies", text), f"'{text}' is not a finite number, or several with commas")
+            for text in ("0,up", "", "0,,90", "nan", "1_0")
+        ),
         (("--plies", "0", "--ply-thickness", "0"), "0 is not a finite number above 0"),
         (("--plies", "0,90", "--fe-axis", "1,0,0"), "take one ply: leave --plies out"),
     ],
@@ -143,3 +217,17 @@ def test_bad_plies_are_said(command: Callable[..., Result], asked: tuple[str, ..
     result = command(*asked)
     assert result.exit_code == 2
     assert words in result.stderr
+
+
+def test_the_help_names_the_thickness_that_plies_have_if_none_is_given() -> None:
+    option = next(p for p in drape_command.params if p.name == "ply_thickness")
+    assert isinstance(option, click.Option)
+    assert f"with --plies {THICKNESS:g}]" in str(option.help)
+
+
+def test_guide_curves_are_refused_beside_plies_and_need_a_name(command: Callable[..., Result]) -> None:
+    for guide in ("--warp-guide", "--weft-guide"):
+        result = command("--plies", "0", guide, "spine.csv")
+        assert (result.exit_code, f"{guide} and --plies contradict each other" in result.stderr) == (2, True)
+        result = command(guide, "")
+        assert (result.exit_code, "the name is empty" in result.stderr) == (2, True)

@@ -10,7 +10,7 @@ from made_parts import bumpy_sheet
 
 import geomdrap as gd
 from geomdrap.sweep import Case, Job, Row, run
-from geomdrap.sweep.record import Record, read_record
+from geomdrap.sweep.record import Record, read_record, set_aside
 
 CASES = [Case("centroid", 0.0), Case((10.0, -20.0, 0.3), 1.0 / 3.0), Case("vertex:-1", 0.0)]
 
@@ -97,3 +97,21 @@ def test_a_damaged_line_in_the_middle_is_named(tmp_path: Path, text: str) -> Non
     path.write_text("".join([*lines[:2], text + "\n", *lines[2:]]))
     with pytest.raises(gd.SweepError, match="line 3: not a row of a sweep"):
         read_record(path, _job())
+
+
+def test_rows_are_set_aside_under_the_first_free_name_and_none_is_lost(tmp_path: Path) -> None:
+    path = tmp_path / "rows.jsonl"
+    assert set_aside(path) is None
+    for number in (1, 2):
+        rows = _written(path, _job())
+        assert set_aside(path) == tmp_path / f"rows-{number}.jsonl"
+        assert not path.exists()
+        assert repr(read_record(tmp_path / f"rows-{number}.jsonl", _job())) == repr(rows)
+
+
+def test_a_file_without_a_row_is_not_worth_keeping_but_one_of_somebody_else_is(tmp_path: Path) -> None:
+    path = tmp_path / "rows.jsonl"
+    Record(path, _job()).close()
+    assert set_aside(path) is None
+    path.write_text("mine\n")
+    assert set_aside(path) == tmp_path / "rows-1.jsonl"

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -86,6 +88,12 @@ def test_an_effect_that_no_process_can_be_sent_is_refused_with_the_way_out() -> 
 
     with pytest.raises(gd.SweepError, match="use -j 1"):
         LocalPool(_job(Local()), 2)
+
+
+def test_all_workers_of_a_pool_start_at_once() -> None:
+    before = set(multiprocessing.active_children())
+    with closing(LocalPool(_job(), 3)):
+        assert len(set(multiprocessing.active_children()) - before) == 3
 
 
 def test_cases_that_are_done_are_not_draped_again() -> None:

@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import click
 import pytest
 from click.testing import CliRunner, Result
 
@@ -74,6 +75,34 @@ def test_rows_are_ranked_in_the_json_and_the_table(run: Callable[..., Result], t
     assert json.loads((tmp_path / "sweep" / "sweep.json").read_text())["rows"] == rows
 
 
+@pytest.mark.parametrize("command", ["sweep", "optimize"])
+def test_the_report_of_the_best_shows_the_command(run: Callable[..., Result], tmp_path: Path, command: str) -> None:
+    asked = ("--origins", "centroid", "--angles", "45", "--pitch", 30, "-j", 1, "--outputs", "best")
+    run(command, "saddle.stl", *asked, *(("--budget", 0) if command == "optimize" else ()))
+    report = (tmp_path / command / "best" / "report.html").read_text()
+    assert f"geomdrap {command} saddle.stl --origins centroid --angles 45 --pitch 30" in report
+
+
+@pytest.mark.parametrize("command", ["sweep", "optimize"])
+def test_the_json_says_what_stderr_says_and_how_plies_were_laid(
+    run: Callable[..., Result], tmp_path: Path, command: str
+) -> None:
+    run("sample", "hemisphere", "--facets", 400)
+    asked = ("--origins", "grid:5x5", "--angles", "0", "-j", 1, "--pitch", 10, "--outputs", "json", "--json")
+    laid = ("--limit-angle", 35, "--reference", "0,1,0", "--blank", "150x100")
+    result = run(command, "hemisphere.stl", *asked, *laid, *(("--budget", 0) if command == "optimize" else ()))
+    assert result.exit_code == 0, result.output
+    for text in (result.stdout, (tmp_path / command / f"{command}.json").read_text()):
+        document = json.loads(text)
+        assert document["limit_angle"] == 35.0
+        assert document["reference"] == [0.0, 1.0, 0.0]
+        assert document["blank"] == [150.0, 100.0]
+        assert document["warnings"]
+        assert "points of grid:5x5 miss the part and are left out" in " ".join(document["notes"])
+        said = [f"Warning: {text}" for text in document["warnings"]] + [f"Note: {text}" for text in document["notes"]]
+        assert [line for line in result.stderr.splitlines() if line.startswith(("Warning", "Note"))] == said
+
+
 def test_the_best_case_is_draped_and_written_as_drape_does(run: Callable[..., Result], tmp_path: Path) -> None:
     result = run(
         "sweep", "saddle.stl", "--angles", "10,45", "-j", 1, "--pitch", 12, "--json", "--objective", "max-shear"
@@ -114,6 +143,31 @@ def test_resume_is_refused_for_another_part_and_the_rows_stay(run: Callable[...,
     error = _error(run("sweep", "cylinder.stl", "--angles", "0", "-j", 1, "--resume"))
     assert "rows.jsonl holds rows of another part: its mesh is not that of cylinder.stl" in error
     assert (tmp_path / "sweep" / "rows.jsonl").read_bytes() == before
+
+
+def test_without_resume_the_rows_of_an_earlier_run_are_kept_and_it_is_said(
+    run: Callable[..., Result], tmp_path: Path
+) -> None:
+    asked = ("-j", 1, "--pitch", 30, "--outputs", "json", "-q")
+    assert run("sweep", "saddle.stl", "--angles", "0,10", *asked).stderr == ""
+    rows, kept = (tmp_path / "sweep" / name for name in ("rows.jsonl", "rows-1.jsonl"))
+    before = rows.read_bytes()
+    result = run("sweep", "saddle.stl", "--angles", "20", *asked)
+    name, other = Path("sweep") / "rows.jsonl", Path("sweep") / "rows-1.jsonl"
+    assert f"Warning: {name} held rows of an earlier run, which are kept in {other} " in result.stderr
+    assert kept.read_bytes() == before
+    assert len(rows.read_text().splitlines()) == 1 + 1
+
+
+@pytest.mark.parametrize("command", ["sweep", "optimize"])
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [(("-o", "here"), "-o names a folder, but"), (("--resume",), "--resume needs the rows of a folder")],
+)
+def test_a_folder_or_rows_to_go_on_with_are_refused_where_nothing_is_written(
+    run: Callable[..., Result], command: str, asked: tuple[str, ...], words: str
+) -> None:
+    assert words in _error(run(command, "saddle.stl", "--outputs", "none", *asked))
 
 
 def test_failed_cases_are_rows_with_a_reason_and_are_counted(run: Callable[..., Result]) -> None:
@@ -207,11 +261,48 @@ def test_ctrl_c_leaves_a_good_file_from_which_resume_goes_on(
     assert rows.read_text().startswith(kept)
 
 
+@pytest.mark.parametrize("command", ["sweep", "optimize"])
+@pytest.mark.parametrize("step", ["draped_best", "whole_folder"])
+def test_ctrl_c_after_the_last_row_says_that_the_rows_are_there(
+    run: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, step: str
+) -> None:
+    from geomdrap.export import sweep_outputs
+    from geomdrap.sweep import Sweep
+
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Sweep if step == "draped_best" else sweep_outputs, step, interrupt)
+    asked = ("--origins", "centroid", "--angles", "0,45", "--pitch", 30, "-j", 1, "--outputs", "json")
+    result = run(command, "saddle.stl", *asked, *(("--budget", 0) if command == "optimize" else ()))
+    assert result.exit_code == 130
+    rows = Path(command) / "rows.jsonl"
+    assert len((tmp_path / rows).read_text().splitlines()) == 1 + 2
+    assert result.stderr.splitlines()[-1] == (
+        f"Error: interrupted; all 2 rows are in {rows}, but not all other files are written; the same command with "
+        "--resume goes on from there"
+    )
+
+
 def test_the_outputs_offered_are_those_that_can_be_written() -> None:
     from geomdrap.cli.sweeping import SWEEP_OUTPUTS as OFFERED
-    from geomdrap.export.sweep_outputs import SWEEP_OUTPUTS
+    from geomdrap.export.sweep_outputs import OPTIMIZE_OUTPUTS, SWEEP_OUTPUTS
 
-    assert tuple(SWEEP_OUTPUTS) == OFFERED
+    assert tuple(SWEEP_OUTPUTS) == tuple(OPTIMIZE_OUTPUTS) == OFFERED
+
+
+def test_the_defaults_of_the_commands_are_those_of_the_library() -> None:
+    from geomdrap.sweep import objective
+    from geomdrap.sweep.optimize import BUDGET
+
+    def default(command: str, name: str) -> object:
+        context = click.Context(cli, info_name="geomdrap")
+        return next(p.default for p in cli.get_command(context, command).params if p.name == name)
+
+    for command in ("sweep", "optimize"):
+        assert default(command, "objective") == objective.DEFAULT
+    assert objective.parse_criteria(default("sweep", "pareto")) == objective.PARETO
+    assert default("optimize", "budget") == BUDGET
 
 
 def test_without_outputs_nothing_is_written(run: Callable[..., Result], tmp_path: Path) -> None:

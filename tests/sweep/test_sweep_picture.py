@@ -9,8 +9,8 @@ import pytest
 from made_parts import bumpy_sheet
 
 from geomdrap.export import sweep_picture
-from geomdrap.export.sweep_origin_map import best_of_origins
 from geomdrap.sweep import Case, Job, Sweep, cases_of, run
+from geomdrap.sweep.ranking import best_of_origins
 
 POINTS = [(-20.0, -20.0, 0.0), (20.0, -20.0, 0.0), (20.0, 25.0, 0.0)]
 
@@ -36,7 +36,7 @@ def test_the_map_shows_the_best_score_of_every_origin_where_it_lies() -> None:
     sweep = _sweep(POINTS, [0.0, 40.0])
     figure = sweep_picture.draw(sweep)
     points = next(a for a in figure.axes if a.collections and "Origins" in a.get_title(loc="left")).collections[0]
-    best = best_of_origins(sweep)
+    best = best_of_origins(sweep.ranked)
     assert list(points.get_array()) == [row.max_shear for row in best]
     at, real = np.array(points.get_offsets()), np.array([row.origin for row in best])
     # the part is seen from above, so that plane distances keep their ratios, and y is down in the picture

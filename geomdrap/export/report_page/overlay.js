@@ -15,7 +15,6 @@ class Overlay {
     Object.assign(this, { svg, camera, model, flatView });
     if (flatView) {
       this.contour = svgElement("path", svg, { d: model.contour, class: "contour", "vector-effect": "non-scaling-stroke" });
-      this.seams = svgElement("path", svg, { d: model.seams || "", class: "seam", "vector-effect": "non-scaling-stroke" });
     }
     this.rosette = svgElement("g", svg, { class: "rosette" });
     this.arms = ["warp", "weft"].map((name) => ({
@@ -45,8 +44,7 @@ class Overlay {
     const { camera, model } = this;
     if (this.contour) {
       const [x, y] = camera.project([0, 0, 0]);
-      const transform = `matrix(${camera.scale} 0 0 ${-camera.scale} ${x} ${y})`;
-      for (const path of [this.contour, this.seams]) path.setAttribute("transform", transform);
+      this.contour.setAttribute("transform", `matrix(${camera.scale} 0 0 ${-camera.scale} ${x} ${y})`);
     }
     const arms = this.flatView ? [[1, 0, 0], [0, 1, 0]] : [model.warp, model.weft];
     const origin = this.flatView ? [0, 0, 0] : model.origin;

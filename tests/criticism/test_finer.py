@@ -1,0 +1,112 @@
+"""The finer net on which costly models are fitted to the end, and what its pitch leaves in doubt."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from geomdrap.criticism.evidence import Evidence
+from geomdrap.criticism.experiment import Experiment, Layup
+from geomdrap.criticism.fit import Fit
+from geomdrap.criticism.likelihood import NO_SCATTER
+from geomdrap.criticism.model import Fitted, Model, refined
+from geomdrap.criticism.search import Round
+
+diagnose = import_module("geomdrap.criticism.diagnose")  # the package's own name for it is the function
+POINTS = 12
+
+
+def experiment(pitches):
+    """Distances off the tool, without a part."""
+    return Experiment(
+        surface=None,
+        measurement=None,
+        layup=Layup("centroid", 0.0),
+        at=np.random.default_rng(0).uniform(-50.0, 50.0, (POINTS, 2)),
+        frames=np.tile(np.eye(3), (POINTS, 1, 1)),
+        channels=("normal",),
+        mask=np.ones((POINTS, 1), bool),
+        noise=np.ones(POINTS),
+        measured=np.zeros(POINTS),
+        pitches=pitches,
+    )
+
+
+def fitted(*effects):
+    model = Model(effects)
+    return Fitted(model, Fit(model.neutral, np.zeros(POINTS), np.zeros((POINTS, len(model.neutral))), 0.0))
+
+
+@pytest.mark.parametrize(
+    ("pitches", "finer"), [((2.0, 8.0), (2.0, 4.0)), ((3.0, 4.0), (3.0, 3.0)), ((4.0, 4.0), (4.0, 4.0))]
+)
+def test_the_net_for_what_is_costly_is_halved_down_to_the_other_one(pitches, finer):
+    assert experiment(pitches).finer().pitches == finer
+
+
+def test_locking_in_place_of_another_costly_effect_is_fitted_on_a_net_of_half_the_pitch(monkeypatch):
+    base, trials = fitted(), (fitted("shear-stiffness"), fitted("locking"))
+    evidence = tuple(
+        Evidence(n, g, 1, 0.0, 0.0, 0.9, 0.5, True) for n, g in (("shear-stiffness", 900.0), ("locking", 9.0))
+    )
+    of = Round(base, trials, evidence, (NO_SCATTER,) * 3, np.ones(POINTS, bool), None, 1.0, ())
+    asked = []
+
+    def record(finer, whiten, model, ratio):
+        asked.append((model.model.effects, finer.pitches[1]))
+        if len(asked) == 2:
+            raise StopIteration  # the verdict is no matter here
+        return model
+
+    monkeypatch.setattr(diagnose, "refined", record)
+    monkeypatch.setattr(diagnose, "left_over", lambda *_: SimpleNamespace(structured=True))
+    monkeypatch.setattr(diagnose, "_locks", lambda *_: True)
+    with pytest.raises(StopIteration):
+        diagnose.conclude(experiment((1.0, 8.0)), [of], ())
+    assert asked == [(("shear-stiffness",), 4.0), (("locking",), 4.0)]
+
+
+SLOPES = np.random.default_rng(1).normal(size=(POINTS, 4))  # of the placement and an offset
+TRUTH, PER_PITCH = np.array([0.3, -0.2, 0.5, 2.0]), np.array([0.01, 0.02, -0.01, 0.03])
+
+
+class OfSecondOrder:
+    """An experiment whose net is off by PER_PITCH·pitch² in every value."""
+
+    def __init__(self, pitch):
+        self.pitch, self.measured, self.refused = pitch, SLOPES @ TRUTH, {}
+
+    def predict(self, effects):
+        values = np.array([v for e in effects for v in e.values.values()])
+        return SLOPES @ (values + PER_PITCH * self.pitch**2)
+
+
+def found_at(pitch):
+    """The best fit to a net of that pitch."""
+    return Fitted(Model(("thickness",)), Fit(TRUTH - PER_PITCH * pitch**2, np.zeros(POINTS), SLOPES, 0.0))
+
+
+@pytest.mark.parametrize(("coarse", "fine"), [(4.0, 2.0), (4.0, 3.0)])
+def test_the_doubt_is_what_the_finer_net_is_still_off(coarse, fine):
+    got = refined(OfSecondOrder(fine), lambda a: a, found_at(coarse), coarse / fine)
+    np.testing.assert_allclose(got.values, found_at(fine).values)
+    np.testing.assert_allclose(got.doubt, np.abs(got.values - TRUTH))
+
+
+def test_without_a_finer_net_no_doubt_is_known():
+    got = refined(OfSecondOrder(4.0), lambda a: a, found_at(6.0), 1.0)
+    np.testing.assert_allclose(got.values, found_at(4.0).values)
+    assert got.doubt is None
+
+
+def test_where_the_finer_net_takes_no_step_no_doubt_is_known(monkeypatch):
+    old, net = found_at(4.0), OfSecondOrder(2.0)
+    here = net.predict(old.model.built(old.values))
+    answers = iter([here, np.full(POINTS, np.nan)])
+    monkeypatch.setattr(net, "predict", lambda effects: next(answers))
+    got = refined(net, lambda a: a, old, 2.0)
+    np.testing.assert_array_equal(got.values, old.values)
+    assert got.doubt is None
