@@ -153,6 +153,7 @@ def _summary(stack: Sequence[Ply], thickness: float, folder: Path | None) -> Ite
     rolls = [ply.drape.roll for ply in stack if ply.drape.roll is not None]
     if rolls:
         strips = ", ".join(str(len(roll.strips)) for roll in rolls)
-        yield f"strips of a roll {rolls[0].width:g} mm wide: {strips}; {sum(roll.length for roll in rolls):.1f} mm used"
+        used = sum(roll.length for roll in rolls)
+        yield f"strips of a roll {rolls[0].width:g} mm wide: {strips}; {used:.1f} mm used"
     if folder:
         yield f"files: {folder / 'plies.json'}, {folder}/ply-1 to ply-{len(stack)}"
