@@ -122,6 +122,13 @@ def test_equal_seams_make_even_strips():
     assert seams == pytest.approx([290 / 3 - 10.0, 250.0 - 290 / 3 + 10.0])
 
 
+def test_no_strip_is_narrower_than_a_quarter_of_the_roll_however_cheap_its_seam():
+    (seam,) = place_seams(0.0, 110.0, 100.0, 0.0, lambda v: v)  # it could lie at 10
+    assert 25.0 - 1e-9 <= seam < 25.0 + 90.0 / 96
+    (seam,) = place_seams(0.0, 110.0, 100.0, 0.0, lambda v: -v)
+    assert 85.0 - 90.0 / 96 < seam <= 85.0 + 1e-9
+
+
 # -- on parts ---------------------------------------------------------------------------------------------------
 
 
@@ -239,6 +246,24 @@ def test_a_seam_keeps_off_sheared_cloth_the_more_the_lower_the_limit_is():
     v = np.concatenate([ring[:, 1] for ring in result.flat.outer])
     others = [weighed(level) for level in np.linspace(v.max() - 150.0, v.min() + 150.0, 25)]
     assert weighed(placed[2.0].v) <= min(others) + 0.05 * (max(others) - min(others))
+
+
+def test_a_seam_over_a_slit_that_stays_shut_is_whole():
+    flat = shapes.plane(200.0, 200.0, 10.0)
+    result = draped(flat.cut(np.array([[0.0, -100.0, 0.0], [0.0, 20.0, 0.0]])), origin=(0.0, 60.0, 0.0))
+    roll = lay_on_roll(result, 110.0)
+    assert_sums_to_the_pattern(result, roll)
+    (seam,) = roll.seams
+    assert -160.0 < seam.v < -40.0  # where the slit is
+    assert seam.length == pytest.approx(200.0, abs=0.01)
+
+
+def test_the_pattern_of_a_closed_part_is_laid_in_strips_that_sum_to_it():
+    result, roll = laid(shapes.icosphere(100.0, 4), 120.0, origin=(0, 0, 100.0), pitch=8.0)
+    assert_sums_to_the_pattern(result, roll)
+    for seam in roll.seams:
+        on_part = sum(np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in seam.on_part)
+        assert on_part == pytest.approx(seam.length, rel=0.02)
 
 
 def test_a_blank_is_laid_on_the_roll_as_it_is_cut():
