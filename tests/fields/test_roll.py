@@ -73,6 +73,15 @@ def test_a_line_through_both_arms_of_a_u_leaves_two_contours_that_do_not_run_alo
     assert sum(signed_area(r) for r in above) == pytest.approx(30.0 * 60.0 + 30.0 * 40.0)
 
 
+def test_what_is_below_the_teeth_of_a_comb_is_closed_across_each_tooth():
+    teeth = [[90, 50], [70, 50], [70, 20], [60, 20], [60, 50], [50, 50], [50, 20], [30, 20], [30, 50], [0, 50]]
+    (ring,) = band((np.array([[0, 0], [90, 0], *teeth], float),), 0.0, 35.0)
+    sides = np.roll(ring, -1, axis=0) - ring
+    on_line = (ring[:, 1] == 35.0) & (sides[:, 1] == 0.0)
+    assert sorted(-sides[on_line, 0]) == [10.0, 20.0, 30.0]  # widths of the teeth, all to the left
+    assert np.abs(sides).sum() == 2 * 90.0 + 2 * 35.0 + 4 * 15.0
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_bands_of_a_ragged_star_with_holes_sum_to_it(seed):
     rng = np.random.default_rng(seed)
