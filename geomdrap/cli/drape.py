@@ -23,8 +23,10 @@ from geomdrap.cli.options import (
     part_argument,
     quiet_option,
     reading_options,
+    roll_options,
     seed_options,
 )
+from geomdrap.cli.roll import check_roll, on_roll
 from geomdrap.cli.values import NamedPath, Numbers
 
 if TYPE_CHECKING:
@@ -62,6 +64,7 @@ THICKNESS = 0.25  # mm, of a usual ply of woven prepreg
     metavar="DEG,DEG,...",
     help="A stack instead of one ply: angles from --angle, the tool's side first, each ply draped on those below it.",
 )
+@roll_options
 @element_options
 @click.option(
     "--paper",
@@ -102,6 +105,7 @@ def drape(
       geomdrap drape hood.stl --plies 0,45,-45,90 --ply-thickness 0.3 -o laminate
       geomdrap drape hood.stl --effect slip:coefficient=0.6 --effect thickness:offset=1.5
       geomdrap drape hood.stl --angle 45 --outputs cut,pdf --paper A3
+      geomdrap drape hood.stl --angle 45 --roll-width 600 --seam-overlap 20
       geomdrap drape hood.stl --angle 45 --onto hood_fe.inp --ply-thickness 0.3
     """
     from geomdrap.cli.messages import of_an_earlier_run, print_json, say
@@ -114,6 +118,7 @@ def drape(
     context = click.get_current_context()
     if context.get_parameter_source("angle") == ParameterSource.COMMANDLINE:
         _refuse_guides(asked, "--angle")
+    check_roll(asked["roll_width"], asked["seam_overlap"])
     if plies is not None:
         from geomdrap.cli.plies import drape_plies
 
@@ -172,9 +177,11 @@ def compute(
     warp_guide: Path | None = None,
     weft_guide: Path | None = None,
     plugins: tuple[Path, ...] = (),
+    roll_width: float | None = None,
+    seam_overlap: float | None = None,
     **drape_options: Any,
 ) -> Drape:
-    """Read, drape and evaluate; ``drape_options`` go to `geomdrap.drape` as they are."""
+    """Read, drape, evaluate and lay on the roll; ``drape_options`` go to `geomdrap.drape` as they are."""
     import geomdrap as gd
     from geomdrap.cli.acting import effects_of
     from geomdrap.cli.part import read_part
@@ -197,4 +204,5 @@ def compute(
         result: Drape = gd.evaluate(net, limit_angle, progress.share)
         return result
 
-    return at(asked) if asked is not None else finer_where_coarse(at(None), at)
+    draped = at(asked) if asked is not None else finer_where_coarse(at(None), at)
+    return on_roll(draped, roll_width, seam_overlap)

@@ -185,6 +185,24 @@ def outputs_option(function: F) -> F:
     )(function)
 
 
+def roll_options(function: F) -> F:
+    """Add the roll that the pattern is laid from: --roll-width, --seam-overlap."""
+    for option in (
+        click.option(
+            "--seam-overlap",
+            type=Number("MM", least=0.0),
+            help="By how much neighbouring strips of the roll lie on each other at a seam.  [default: 0]",
+        ),
+        click.option(
+            "--roll-width",
+            type=Number("MM", above=0.0),
+            help="Width of the roll of fabric, along the weft: a higher pattern is laid from strips with seams.",
+        ),
+    ):
+        function = option(function)
+    return function
+
+
 def element_options(function: F) -> F:
     """Add how the ply is handed over to finite elements: --onto, --fe-axis, --ply-thickness."""
     for option in (

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+
+from geomdrap.cli.roll import on_roll
 
 if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
@@ -17,7 +20,7 @@ if TYPE_CHECKING:
 
 def drape_plies(
     plies: tuple[float, ...], extras: Extras, folder: Path, outputs: tuple[str, ...], strict: bool, as_json: bool,
-    quiet: bool, **asked: Any,
+    quiet: bool, *, roll_width: float | None = None, seam_overlap: float | None = None, **asked: Any,
 ) -> int:  # fmt: skip
     """Drape the plies of a stack, at these angles in degrees, write and print them; the exit code."""
     from geomdrap.cli.elements import ply_on
@@ -35,6 +38,7 @@ def drape_plies(
         stack = lay_plies(
             surface, plies, thickness, **laid, on_ply=lambda ply: progress.share(ply.number / len(plies))
         )
+        stack = tuple(replace(ply, drape=on_roll(ply.drape, roll_width, seam_overlap)) for ply in stack)
         progress.step("Writing")
         elements = [ply_on(ply.drape, None, None, outputs) for ply in stack]
         files = _write(stack, extras, folder, outputs, progress, elements)
@@ -146,5 +150,10 @@ def _summary(stack: Sequence[Ply], thickness: float, folder: Path | None) -> Ite
             f"{100 * area.coverage:9.2f}{area.fabric:12.0f}"
         )
     yield f"fabric of all plies {sum(ply.drape.area.fabric for ply in stack):.0f} mm²"
+    rolls = [ply.drape.roll for ply in stack if ply.drape.roll is not None]
+    if rolls:
+        strips = ", ".join(str(len(roll.strips)) for roll in rolls)
+        used = sum(roll.length for roll in rolls)
+        yield f"strips of a roll {rolls[0].width:g} mm wide: {strips}; {used:.1f} mm used"
     if folder:
         yield f"files: {folder / 'plies.json'}, {folder}/ply-1 to ply-{len(stack)}"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape
+    from geomdrap.fields.roll import Roll
 
 _MOST_BARE = 8  # regions listed one by one
 
@@ -33,10 +34,22 @@ def _lines(result: Drape, files: Mapping[str, Path]) -> Iterator[tuple[str, str]
     )
     yield "area", f"part {_area(area.part)}, draped {_area(area.draped)}, fabric {_area(area.fabric)}"
     yield "coverage", _percent(area.coverage)
+    if result.roll is not None:
+        yield from _roll(result.roll)
     yield from _bare(result)
     yield "checks", ", ".join(_checks(result))
     if files:
         yield "files", f"{next(iter(files.values())).parent}: {', '.join(f.name for f in files.values())}"
+
+
+def _roll(roll: Roll) -> Iterator[tuple[str, str]]:
+    """What of the roll is used, and a line per seam."""
+    many = "one strip, no seam" if len(roll.strips) == 1 else f"{len(roll.strips)} strips"
+    if not roll.strips:
+        many = "no fabric to lay"
+    yield "roll", f"{roll.width:g} mm wide: {many}, {roll.length:.1f} mm used, {_percent(roll.waste)} of it wasted"
+    for seam in roll.seams:
+        yield "", f"seam at v = {seam.v:.1f} mm, {seam.length:.1f} mm long, crosses shear up to {seam.max_shear:.2f}°"
 
 
 def _checks(result: Drape) -> Iterator[str]:

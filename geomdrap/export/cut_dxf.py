@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from geomdrap.export.cut_pieces import DEPTH, Piece, cut_pieces
+from geomdrap.export.cut_pieces import DEPTH, Piece, cut_pieces, style_name
 from geomdrap.export.drawing import note_words, rounded
 from geomdrap.export.dxf import METRIC, fixed_metadata
 from geomdrap.export.whole import write_whole
@@ -53,7 +53,7 @@ def style_words(pieces: tuple[Piece, ...]) -> list[str]:
     """System text that stands once in the file."""
     return [
         "ASTM/D6673",
-        f"Style Name: {pieces[0].name if pieces else 'EMPTY'}",
+        f"Style Name: {style_name(pieces)}",
         "Sample Size: 1",
         "Units: METRIC",
     ]
@@ -65,7 +65,7 @@ def draw_piece(block: Any, piece: Piece, result: Drape) -> None:
         for polygon in polygons:
             block.add_polyline2d(rounded(polygon).tolist(), close=True, dxfattribs={"layer": layer})
             add_points(block, polygon)
-    for layer, lines in ((GRAIN, (piece.grain,)), (INTERNAL, piece.axes)):
+    for layer, lines in ((GRAIN, (piece.grain,)), (INTERNAL, (*piece.axes, *piece.seams))):
         for line in lines:
             start, end = rounded(line).tolist()
             block.add_line(start, end, dxfattribs={"layer": layer})
@@ -74,11 +74,23 @@ def draw_piece(block: Any, piece: Piece, result: Drape) -> None:
         angle = float(np.degrees(np.arctan2(notch.inward[1], notch.inward[0])) % 360.0)
         attributes = {"layer": NOTCHES, "angle": round(angle, 6)}
         block.add_point((x, y, DEPTH), dxfattribs=attributes)  # by the standard the depth stands for z
-    height = letter_height((piece,))
-    start = piece.grain[0] - np.array([0.0, 2.0 * height])
-    named = [f"Piece Name: {piece.name}", "Size: 1", "Quantity: 1"]
+    named, notes = [f"Piece Name: {piece.name}", "Size: 1", "Quantity: 1"], note_words(result)
+    start, height = place_of_words(piece, len(named) + len(notes))
     add_words(block, BOUNDARY, named, start, height)
-    add_words(block, TEXT, note_words(result), start - np.array([0.0, 1.8 * height * len(named)]), height)
+    add_words(block, TEXT, notes, start - np.array([0.0, 1.8 * height * len(named)]), height)
+
+
+def place_of_words(piece: Piece, lines: int) -> tuple[np.ndarray, float]:
+    """Where the words on a piece start (2,), and the height of their letters, mm.
+
+    Below the grain line; on a strip of a roll, which they could overhang, half as high as it is, in its middle.
+    """
+    height = letter_height((piece,))
+    if not piece.strip_of:
+        return piece.grain[0] - np.array([0.0, 2.0 * height]), height
+    low, high = piece.outer[:, 1].min(), piece.outer[:, 1].max()
+    height = min(height, 0.5 * (high - low) / (1.8 * lines))
+    return np.array([piece.grain[0, 0], 0.5 * (low + high) + 0.9 * height * (lines - 1)]), height
 
 
 def add_points(block: Any, polygon: np.ndarray) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from geomdrap.errors import GeomdrapError
 from geomdrap.export import palette
-from geomdrap.export.cut_pieces import DEPTH, Piece, cut_pieces
+from geomdrap.export.cut_pieces import DEPTH, Piece, cut_pieces, style_name
 from geomdrap.export.cut_tiles import MARGIN, OVERLAP, Tile, Tiling, tiling
 from geomdrap.export.drawing import note_words
 from geomdrap.export.glyphs import drawable
@@ -43,7 +43,7 @@ def write(result: Drape, path: Path, paper: str = "A4") -> None:
         raise GeomdrapError("there is no flat pattern to print; leave pdf out of --outputs")
     pages = tiling(pieces, paper)
     buffer = io.BytesIO()
-    with PdfPages(buffer, metadata={"CreationDate": None, "Title": f"{pieces[0].name}: flat pattern"}) as pdf:
+    with PdfPages(buffer, metadata={"CreationDate": None, "Title": f"{style_name(pieces)}: flat pattern"}) as pdf:
         pdf.savefig(overview(result, pieces, pages, paper))
         for tile in pages.tiles:
             pdf.savefig(sheet(pieces, pages, tile))
@@ -70,7 +70,7 @@ def sheet(pieces: tuple[Piece, ...], pages: Tiling, tile: Tile) -> Any:
     axes.add_patch(frame)
     draw_pieces(axes, pieces, MARGIN - tile.lower, frame)
     draw_marks(axes, pages)
-    name = f"{pieces[0].name}   row {tile.row} of {pages.rows}, column {tile.column} of {pages.columns}"
+    name = f"{style_name(pieces)}   row {tile.row} of {pages.rows}, column {tile.column} of {pages.columns}"
     axes.text(pages.page[0] - MARGIN, 0.5 * MARGIN, name, fontsize=8, ha="right", va="center", color=palette.INK)
     x, y = MARGIN, 0.35 * MARGIN
     bar = np.array([[x, y + 2], [x, y], [x + CHECK, y], [x + CHECK, y + 2]])
@@ -79,7 +79,7 @@ def sheet(pieces: tuple[Piece, ...], pages: Tiling, tile: Tile) -> Any:
     return figure
 
 
-def draw_pieces(axes: Any, pieces: Iterable[Piece], shift: Floats, frame: Any) -> None:
+def draw_pieces(axes: Any, pieces: Sequence[Piece], shift: Floats, frame: Any) -> None:
     """Contours, cut-outs, notches, axes and grain lines, moved by (2,) mm and cut off at the frame."""
     for piece in pieces:
         for polygon in (piece.outer, *piece.inner):
@@ -91,9 +91,12 @@ def draw_pieces(axes: Any, pieces: Iterable[Piece], shift: Floats, frame: Any) -
             write_in(axes, notch.at + 2.2 * DEPTH * notch.inward + shift, notch.mark.lower(), frame)
         for line in piece.axes:
             draw(axes, line + shift, frame, color=palette.FAINT, lw=0.15 * POINT, ls=(0, (8, 3, 1, 3)))
-        draw_grain(axes, piece.grain + shift, frame)
+        for line in piece.seams:
+            draw(axes, line + shift, frame, color=palette.SEAM, lw=0.25 * POINT, ls=(0, (4, 3)))
+        draw_grain(axes, piece.grain + shift, frame, f"{piece.name}: " if piece.strip_of else "")
     seed = {"marker": "o", "ms": 3.0 * POINT, "mfc": "none", "mec": palette.INK, "mew": 0.2 * POINT}
-    draw(axes, np.zeros((1, 2)) + shift, frame, **seed)
+    for place in sorted({tuple(piece.seed.tolist()) for piece in pieces if np.isfinite(piece.seed).all()}):
+        draw(axes, np.array([place]) + shift, frame, **seed)
 
 
 def write_in(axes: Any, at: Floats, words: str, frame: Any) -> None:
@@ -108,13 +111,14 @@ def draw(axes: Any, points: Floats, frame: Any, **style: Any) -> None:
     line.set_clip_path(frame)
 
 
-def draw_grain(axes: Any, grain: Floats, frame: Any) -> None:
-    """The grain line with a head at its end towards +u, and its name."""
+def draw_grain(axes: Any, grain: Floats, frame: Any, name: str) -> None:
+    """The grain line with a head at its end towards +u, and what it is, after the name of a strip."""
     (left, y), (right, _) = grain
     head = np.array([[right - ARROW, y + 0.35 * ARROW], [right, y], [right - ARROW, y - 0.35 * ARROW]])
     for points in (grain, head):
         draw(axes, points, frame, color=palette.LOW, lw=0.25 * POINT)
-    words = axes.text(0.5 * (left + right), y + 1.5, "warp (grain line)", fontsize=9, color=palette.LOW, ha="center")
+    text = f"{name}warp (grain line)"
+    words = axes.text(0.5 * (left + right), y + 1.5, text, fontsize=9, color=palette.LOW, ha="center")
     words.set_clip_on(True)
     words.set_clip_path(frame)
 
@@ -139,6 +143,7 @@ def overview(result: Drape, pieces: tuple[Piece, ...], pages: Tiling, paper: str
         f"{Path(result.net.surface.source).name}: flat pattern in true scale on {many} (this overview is not)",
         f"pages overlap by {OVERLAP:g} mm: lay the red crosses on each other",
         "double notch: the end of the warp towards +u; circle: the seed",
+        *(["dashed green line: seam, the middle of the overlap"] if any(piece.seams for piece in pieces) else []),
         *(line for line in note_words(result)[1:] if not line.startswith("LOCKED")),
     ]
     for k, line in enumerate(words):

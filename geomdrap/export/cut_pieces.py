@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,11 @@ DEPTH = 4.0
 """Of a notch, mm."""
 APART = 8.0
 """Between the two notches of a double one, along the contour, mm."""
+APART_STRIPS = 20.0
+"""Between strips of a roll, mm."""
+OFF_SEAM = 0.6
+"""Share of the height of a strip in which its grain line lies: at a seam its name would be on the next strip."""
+NO_LEVELS = np.zeros(0)
 GRAIN = 0.6
 """Length of the grain line, as a share of the longest yarn that it can lie on."""
 LEVELS = 41
@@ -43,7 +49,9 @@ class Piece:
     """A piece of fabric in mm, u to the right along the warp, v up; the origin is the seed.
 
     ``outer`` (k, 2) counter-clockwise, ``inner`` clockwise; ``grain`` (2, 2) along the warp; ``axes``: the stretches
-    (2, 2) of the warp and weft through the origin that lie on the piece.
+    (2, 2) of the warp and weft through the origin that lie on the piece; ``seams`` the same of the middles of its
+    overlaps. ``seed`` (2,) is where the origin lies, NaN where on another piece: strips of a roll are moved apart.
+    ``strip_of``: name of the pattern that the piece is cut from in strips, else empty.
     """
 
     name: str
@@ -52,29 +60,74 @@ class Piece:
     grain: Floats
     notches: tuple[Notch, ...]
     axes: tuple[Floats, ...]
+    seams: tuple[Floats, ...]
+    seed: Floats
+    strip_of: str = ""
 
 
 def cut_pieces(result: Drape) -> tuple[Piece, ...]:
-    """The pieces of a drape's flat pattern, the largest first."""
-    flat = result.flat
-    stem = piece_name(result.net.surface.source)
-    ordered = sorted(flat.outer, key=lambda polygon: -signed_area(polygon))
+    """The pieces of a drape's flat pattern, the largest first; those of a roll strip by strip, moved apart."""
+    flat, stem = result.flat, piece_name(result.net.surface.source)
+    roll = result.roll
+    if roll is None or len(roll.strips) < 2:
+        return pieces_of((*flat.outer, *flat.inner), stem)
+    levels = np.array([seam.v for seam in roll.seams])
+    pieces = []
+    for number, strip in enumerate(roll.strips, start=1):
+        inside = levels[(levels > strip.v[0]) & (levels < strip.v[1])]
+        shift = np.array([0.0, (number - 1) * (roll.overlap + APART_STRIPS)])
+        own = pieces_of(strip.contours, f"{stem}-STRIP{number}", inside, OFF_SEAM)
+        pieces += [replace(moved(piece, shift), strip_of=stem) for piece in own]
+    return tuple(pieces)
+
+
+def style_name(pieces: Sequence[Piece]) -> str:
+    """The name of the pattern that the pieces are of."""
+    return (pieces[0].strip_of or pieces[0].name) if pieces else "EMPTY"
+
+
+def pieces_of(
+    contours: Sequence[Floats], stem: str, seams: Floats = NO_LEVELS, grain_within: float = 1.0
+) -> tuple[Piece, ...]:
+    """The pieces that contours (k, 2) enclose, the largest first.
+
+    ``seams`` are levels (n,) to mark, mm along v; for ``grain_within`` see ``grain_line``.
+    """
+    ordered = sorted((ring for ring in contours if signed_area(ring) > 0.0), key=lambda ring: -signed_area(ring))
+    holes = [ring for ring in contours if signed_area(ring) < 0.0]
     pieces = []
     for number, outer in enumerate(ordered, start=1):
-        inner = tuple(hole for hole in flat.inner if winding(outer, hole.mean(axis=0)) or winding(outer, hole[0]))
-        contours = (outer, *inner)
+        inner = tuple(hole for hole in holes if winding(outer, hole.mean(axis=0)) or winding(outer, hole[0]))
+        own = (outer, *inner)
         zero = np.zeros(1)
         pieces.append(
             Piece(
                 name=stem if len(ordered) == 1 else f"{stem}-{number}",
                 outer=outer,
                 inner=inner,
-                grain=grain_line(contours),
+                grain=grain_line(own, grain_within),
                 notches=notches(outer),
-                axes=(*yarn_lines(contours, zero, 1), *yarn_lines(contours, zero, 0)),
+                axes=(*yarn_lines(own, zero, 1), *yarn_lines(own, zero, 0)),
+                seams=yarn_lines(own, seams, 1),
+                seed=np.zeros(2),
             )
         )
     return tuple(pieces)
+
+
+def moved(piece: Piece, shift: Floats) -> Piece:
+    """The piece of a strip moved by (2,) mm; the seed goes with the strips whose piece it lies on."""
+    on = winding(piece.outer, piece.seed) != 0
+    return replace(
+        piece,
+        outer=piece.outer + shift,
+        inner=tuple(ring + shift for ring in piece.inner),
+        grain=piece.grain + shift,
+        notches=tuple(replace(notch, at=notch.at + shift) for notch in piece.notches),
+        axes=tuple(line + shift for line in piece.axes),
+        seams=tuple(line + shift for line in piece.seams),
+        seed=piece.seed + shift if on else np.full(2, np.nan),
+    )
 
 
 def piece_name(source: str) -> str:
@@ -83,9 +136,14 @@ def piece_name(source: str) -> str:
     return "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "_" for c in stem) or "PIECE"
 
 
-def grain_line(contours: tuple[Floats, ...]) -> Floats:
-    """A line (2, 2) along the warp in the middle of the longest stretch of warp that lies on the piece."""
+def grain_line(contours: tuple[Floats, ...], inner: float = 1.0) -> Floats:
+    """A line (2, 2) along the warp in the middle of the longest stretch of warp that lies on the piece.
+
+    Only warps in the ``inner`` share of the piece's height are looked at.
+    """
     low, high = contours[0][:, 1].min(), contours[0][:, 1].max()
+    rim = 0.5 * (1.0 - inner) * (high - low)
+    low, high = low + rim, high - rim
     levels = low + (high - low) * ((np.arange(LEVELS) + 0.5) / LEVELS + OFF_LEVEL)
     lines = yarn_lines(contours, levels, 1)
     longest = max(lines, key=lambda line: line[1, 0] - line[0, 0])

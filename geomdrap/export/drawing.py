@@ -6,6 +6,7 @@ so that nothing but the pattern lies inside its contours.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,9 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.export.report_json import is_incomplete
+from geomdrap.fields.flat import yarn_lines
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape, FlatPattern
+    from geomdrap.fields.roll import Roll
 
 Floats = NDArray[np.float64]
 
@@ -74,10 +77,22 @@ def flat_drawing(result: Drape) -> Drawing:
         Layer("WEFT_LINES", 0x4C9A6A, 3, open_lines(flat.weft_lines)),
         Layer("INNER_CONTOURS", 0x8A3FA0, 6, closed_lines(flat.inner)),
         Layer("OUTER_CONTOUR", 0x000000, 7, closed_lines(flat.outer)),
+        *seam_layers(result),
         rosette(lower, upper),
         notes(result, lower, upper),
     )
     return Drawing(layers, *corners(layers))
+
+
+def seam_layers(result: Drape) -> Iterator[Layer]:
+    """The seams between strips of a roll, and the edges of the strips where these overlap; none without a roll."""
+    if result.roll is None:
+        return
+    yield Layer("SEAMS", 0x138A36, 94, open_lines(tuple(line for seam in result.roll.seams for line in seam.pieces)))
+    if result.roll.overlap > 0.0:
+        edges = np.array([v + d * result.roll.overlap for v in (s.v for s in result.roll.seams) for d in (-0.5, 0.5)])
+        lines = yarn_lines((*result.flat.outer, *result.flat.inner), edges, 1)
+        yield Layer("STRIP_EDGES", 0x7CC08F, 84, open_lines(lines))
 
 
 def pattern_corners(flat: FlatPattern) -> tuple[Floats, Floats]:
@@ -158,7 +173,16 @@ def note_words(result: Drape) -> list[str]:
     ]
     if any(len(polygon) for polygon in result.flat.locked):
         words.append(f"LOCKED_ZONES: shear over {result.limit_angle:g} deg")
+    if result.roll is not None:
+        words.append(roll_words(result.roll))
     return words
+
+
+def roll_words(roll: Roll) -> str:
+    """How many strips of the roll, and how they overlap."""
+    strips = "one strip, no seam" if len(roll.strips) == 1 else f"{len(roll.strips)} strips"
+    overlap = f", overlap {roll.overlap:g} mm" if roll.overlap > 0.0 and roll.seams else ""
+    return f"roll {roll.width:g} mm wide: {strips}{overlap}"
 
 
 def check_length(room: float) -> float:

@@ -12,6 +12,7 @@ from geomdrap.export import palette
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape, FlatPattern
+    from geomdrap.fields.roll import Seam
 
 Floats = NDArray[np.float64]
 
@@ -45,10 +46,19 @@ def draw_flat_map(axes: Any, result: Drape, every: int, arrow: float) -> None:
             drawn = LineCollection(lines, colors=colour, linewidths=0.45, alpha=opacity, zorder=3)
             axes.add_collection(drawn)
             drawn.set_clip_path(outline, axes.transData)
+        seams = [piece for seam in seams_of(result) for piece in seam.pieces]
+        if seams:
+            axes.add_collection(LineCollection(seams, colors=palette.PAPER, linewidths=4.0, zorder=5))
+            axes.add_collection(LineCollection(seams, colors=palette.SEAM, linewidths=2.2, zorder=6))
         axes.add_patch(
             PathPatch(outline, facecolor="none", edgecolor=palette.INK, lw=1.2, joinstyle="round", zorder=4)
         )
     draw_rosette(axes, (0.0, 0.0), (arrow, 0.0), (0.0, arrow))
+
+
+def seams_of(result: Drape) -> tuple[Seam, ...]:
+    """The seams between strips of a roll; none without a roll."""
+    return result.roll.seams if result.roll is not None else ()
 
 
 def compound_path(polygons: Sequence[Floats]) -> Any:

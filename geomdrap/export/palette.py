@@ -25,6 +25,9 @@ WEFT = "#5b2a86"
 LIMIT_LINE = "#00d5e8"
 """The limit angle on the continuous map and its scale."""
 
+SEAM = "#138a36"
+"""Seams between strips of a roll, on both maps; no colour of theirs is a green."""
+
 CONTINUOUS = "magma", 0.98, 0.16
 """Light where there is no shear, so that a part with little of it shows its form; dark is beyond."""
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from geomdrap.export import palette
 from geomdrap.export.camera import Camera, extent, two_views
 from geomdrap.export.drawing import round_length
-from geomdrap.export.flat_map import draw_flat_map, draw_rosette, pattern_extent
+from geomdrap.export.flat_map import draw_flat_map, draw_rosette, pattern_extent, seams_of
 from geomdrap.export.layout import Box, Panel, best_page
 from geomdrap.export.legend import draw_footer, draw_header, footer_height
 from geomdrap.export.scene import Scale, Skin, prepare_skin, render
@@ -107,13 +107,15 @@ def draw_view(figure: Any, box: Box, result: Drape, skin: Skin, *, camera: Camer
     )
     net = result.net
     yarns = choose_yarns(net, LINE_SPACING / inches_per_mm)
-    view = render(skin, camera, net, yarns=yarns, scale=Scale(top, result.limit_angle), size=size)
+    seams = [line for seam in seams_of(result) for line in seam.on_part]
+    scale = Scale(top, result.limit_angle)
+    view = render(skin, camera, net, yarns=yarns, scale=scale, size=size, seams=seams)
     axes.imshow(view.image, interpolation="nearest", aspect="auto", extent=(0, size[0], size[1], 0))
     axes.set(xlim=(0, size[0]), ylim=(size[1], 0))
     axes.set_axis_off()
     arrow = DOTS * arrow_length((upper - lower) * inches_per_mm)
     warp, weft = ((arrow * (camera.right @ d), -arrow * (camera.up @ d)) for d in (net.warp0, net.weft0))
-    words = yarns_words(yarns.every, net.pitch)
+    words = yarns_words(yarns.every, net.pitch) + ("; green: seams" if seams else "")
     if view.origin_visible:
         draw_rosette(axes, view.origin, warp, weft)
     else:
@@ -141,7 +143,10 @@ def draw_pattern(figure: Any, box: Box, result: Drape) -> None:
     axes.locator_params(nbins=6, min_n_ticks=2)
     for side in axes.spines.values():
         side.set_color(palette.BARE_STRIPE)
-    caption(figure, box, f"Flat pattern, {size[0]:.4g} × {size[1]:.4g} mm")
+    words = f"Flat pattern, {size[0]:.4g} × {size[1]:.4g} mm"
+    if seams_of(result):
+        words += f", {len(seams_of(result)) + 1} strips"
+    caption(figure, box, words)
 
 
 def arrow_length(size: Floats) -> float:

@@ -17,6 +17,7 @@ import numpy as np
 
 from geomdrap import __version__
 from geomdrap.export import palette
+from geomdrap.export.flat_map import seams_of
 from geomdrap.export.ply_corners import Box
 from geomdrap.export.report_json import plain
 from geomdrap.export.report_mesh import ReportMesh, report_mesh
@@ -88,7 +89,9 @@ def description(result: Drape, mesh: ReportMesh) -> dict[str, Any]:
     from geomdrap.fishnet import Status
 
     net = result.net
+    seams = [seam.v for seam in seams_of(result)]
     return {
+        **({"seams": seams} if seams else {}),
         "space": box(mesh.space),
         "fabric": box(mesh.fabric),
         "pitch": net.pitch,

@@ -15,6 +15,7 @@ from geomdrap.export.whole import write_whole
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape
+    from geomdrap.fields.roll import Roll
     from geomdrap.fishnet import Effect
 
 SCHEMA = "geomdrap.drape/1"
@@ -30,6 +31,7 @@ def as_dict(result: Drape, files: Mapping[str, str | Path] | None = None) -> dic
     what is not a number becomes None. Keys come in a fixed order.
     """
     net = result.net
+    roll = {} if result.roll is None else {"roll": roll_as_dict(result.roll)}
     return plain(
         {
             "schema": SCHEMA,
@@ -48,6 +50,7 @@ def as_dict(result: Drape, files: Mapping[str, str | Path] | None = None) -> dic
             "share": _fields(result.statistics, "over_half_limit", "over_limit"),
             "area": _fields(result.area, "part", "draped", "fabric", "coverage"),
             "incomplete": is_incomplete(result),
+            **roll,
             "bare": [_fields(region, "area", "center", "reason") for region in result.bare],
             "absent": absent_counts(result),
             "checks": _fields(result.checks, "edge_error", "off_surface", "curvature_residual"),
@@ -56,6 +59,22 @@ def as_dict(result: Drape, files: Mapping[str, str | Path] | None = None) -> dic
             "files": {key: str(name) for key, name in (files or {}).items()},
         }
     )
+
+
+def roll_as_dict(roll: Roll) -> dict[str, Any]:
+    """Give the JSON object of a pattern laid from strips of a roll."""
+    return {
+        **_fields(roll, "width", "overlap", "length", "waste"),
+        "strips": [_fields(strip, "v", "u", "length", "area") for strip in roll.strips],
+        "seams": [
+            {
+                **_fields(seam, "v", "length"),
+                "pieces": [piece[:, 0] for piece in seam.pieces],
+                **_fields(seam, "max_shear", "max_shear_at", "on_part"),
+            }
+            for seam in roll.seams
+        ],
+    }
 
 
 def write(result: Drape, path: Path, files: Mapping[str, str | Path] | None = None) -> None:

@@ -18,6 +18,7 @@ from geomdrap.fields.figures import least_blank
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape
+    from geomdrap.fields.roll import Roll
 
 EDGE_ERROR = 1e-4
 """Share of the pitch by which a side may be too long, and still be called right."""
@@ -129,6 +130,7 @@ def cards(result: Drape, command: str) -> str:
     parts = [
         card("Shear", table(shear_rows(result)) + histogram(result)),
         card("Areas", table(area_rows(result))),
+        *([card("Roll", table(roll_rows(result.roll)))] if result.roll is not None else []),
         bare_card(result),
         card("Checks", table(check_rows(result))),
         card("Settings", table(setting_rows(result))),
@@ -176,6 +178,19 @@ def area_rows(result: Drape) -> Iterator[tuple[str, str, str]]:
         width, height = least_blank(result.net, result.trimmed)
         blank = width * height
         yield "rectangle", area(blank), f"{pattern_size(result)}; {percent(1 - areas.fabric / blank)} of it is waste"
+
+
+def roll_rows(roll: Roll) -> Iterator[tuple[str, str, str]]:
+    """The strips that the pattern is laid from, and the seams between them (green in both views)."""
+    yield "roll", f"{roll.width:g} mm wide", f"strips overlap by {roll.overlap:g} mm" if roll.overlap > 0.0 else ""
+    yield "used", f"{roll.length:.1f} mm", f"{percent(roll.waste)} of it is waste"
+    for number, strip in enumerate(roll.strips, start=1):
+        yield f"strip {number}", f"{strip.length:.1f} mm", f"v from {strip.v[0]:.1f} to {strip.v[1]:.1f} mm"
+    if not roll.seams:
+        yield "seams", "none", ""
+    for seam in roll.seams:
+        words = f"{seam.length:.1f} mm long, crosses shear up to {seam.max_shear:.2f}°"
+        yield "seam", f"v = {seam.v:.1f} mm", words
 
 
 def bare_card(result: Drape) -> str:

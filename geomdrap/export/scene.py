@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 OVERSAMPLING = 2
+SEAM_WIDTH = 4
+"""Pixels before the image is made smaller."""
 CREASE = np.cos(np.radians(30.0))
 
 
@@ -89,9 +91,16 @@ class Scale:
 
 
 def render(
-    skin: Skin, camera: Camera, net: Net, *, yarns: Yarns, scale: Scale, size: tuple[int, int]
+    skin: Skin,
+    camera: Camera,
+    net: Net,
+    *,
+    yarns: Yarns,
+    scale: Scale,
+    size: tuple[int, int],
+    seams: Sequence[Floats] = (),
 ) -> View:
-    """Draw the part with its net in an image of size (columns, rows)."""
+    """Draw the part with its net, and seams (k, 3) mm, in an image of size (columns, rows)."""
     columns, rows = (OVERSAMPLING * n for n in size)
     viewport = Viewport.around(camera, skin.surface.points, columns, rows)
     depth, image = draw_skin(skin, viewport, scale)
@@ -99,6 +108,7 @@ def render(
     ink(image, line_mask(yarns.weft, viewport, bias, depth), palette.INK, 0.30)
     ink(image, line_mask(yarns.warp, viewport, bias, depth), palette.INK, 0.60)
     ink(image, edge_mask(skin, viewport, depth), palette.INK, 0.85)
+    ink(image, line_mask(seams, viewport, bias, depth, SEAM_WIDTH), palette.SEAM, 1.0)
     place = viewport.pixels(net.origin[None])
     seen = bool(visible_points(place, depth, bias)[0])
     small = image.reshape(size[1], OVERSAMPLING, size[0], OVERSAMPLING, 3).mean(axis=(1, 3))
@@ -144,13 +154,13 @@ def corner_light(normals: NDArray[np.float32], camera: Camera) -> NDArray[np.flo
 
 
 def line_mask(
-    lines: Sequence[Floats], viewport: Viewport, bias: float, depth: NDArray[np.float32]
+    lines: Sequence[Floats], viewport: Viewport, bias: float, depth: NDArray[np.float32], width: int = 1
 ) -> NDArray[np.uint8]:
     """Visible pixels of polylines (k, 3) mm, as a mask of the image's size."""
     mask = np.zeros(depth.shape, dtype=np.uint8)
     for line in lines:
         seen = viewport.pixels(line)
-        draw_segments(seen[:-1], seen[1:], 1, bias, depth, mask)
+        draw_segments(seen[:-1], seen[1:], width, bias, depth, mask)
     return mask
 
 

@@ -58,6 +58,7 @@ def evaluate(
         checks=checks,
         warnings=(*net.warnings, *doubts(flat, checks, areas(trimmed))),
         trimmed=trimmed,
+        roll=None,
     )
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from geomdrap.fields.roll import Roll
     from geomdrap.fields.trim import Trimmed
     from geomdrap.fishnet import Net
 
@@ -90,7 +91,7 @@ class Drape:
     vectors; ``face_thickness`` and ``face_fibre_volume``, factors on the flat fabric's; ``face_coverage`` 0..1;
     ``face_reason``, a ``Status``: why it is bare. NaN on bare facets. ``warnings`` are the net's, and what the result
     itself gives reason to doubt. ``trimmed``: the facets cut to the pitch, with fabric coordinates and directions, of
-    which all of this was read.
+    which all of this was read. ``roll``: the strips of a roll that the pattern is laid from, where one was given.
     """
 
     net: Net
@@ -109,3 +110,4 @@ class Drape:
     checks: Checks
     warnings: tuple[str, ...]
     trimmed: Trimmed
+    roll: Roll | None = None

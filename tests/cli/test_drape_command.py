@@ -58,7 +58,7 @@ def test_options_arrive_as_values(run: Run, asked: dict[str, Any]) -> None:
             "--flip",
             "--project",
         ),
-        *("--cut", "slit.csv", "--cut", "dart.csv"),
+        *("--cut", "slit.csv", "--cut", "dart.csv", "--roll-width", "1270", "--seam-overlap", "25"),
         *("--effect", "slip:coefficient=0.2", "--effect", "bridging:radius=9", "--model", "m.toml", "--plugin", "p.py"),
         *SOME,
     )
@@ -66,6 +66,8 @@ def test_options_arrive_as_values(run: Run, asked: dict[str, Any]) -> None:
     asked.pop("result")
     assert asked == {
         "cuts": (Path("slit.csv"), Path("dart.csv")),
+        "roll_width": 1270.0,
+        "seam_overlap": 25.0,
         "part": Path("a.stl"),
         "origin": (-5.0, 5.0, 84.4),
         "angle": -45.0,

@@ -131,6 +131,7 @@ def made_up_drape(
         area=area,
         bare=tuple(bare),
         statistics=statistics,
+        roll=None,
     )
 
 

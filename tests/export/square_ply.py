@@ -61,6 +61,7 @@ def _evaluated(net: Record) -> Record:
     return Record(
         net=net,
         warnings=net.warnings,
+        roll=None,
         limit_angle=50.0,
         face_shear=shear,
         face_warp=np.tile([1.0, 0.0, 0.0], (m, 1)),

@@ -32,7 +32,7 @@ def result():
 
 def pattern(outer=(SQUARE,), inner=(HOLE,)):
     flat = SimpleNamespace(outer=tuple(outer), inner=tuple(inner))
-    return SimpleNamespace(flat=flat, net=SimpleNamespace(surface=SimpleNamespace(source="bügel 2.stl")))
+    return SimpleNamespace(flat=flat, roll=None, net=SimpleNamespace(surface=SimpleNamespace(source="bügel 2.stl")))
 
 
 def test_the_piece_is_the_flat_pattern_with_its_cut_outs(result):

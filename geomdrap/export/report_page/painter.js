@@ -75,6 +75,7 @@ class Painter {
       fabricLower: model.fabric.lower, fabricSize: model.fabric.size, reach: model.reach || [1e30, 1e30],
       spacing: [look.spacing, look.spacing], top: model.top, limit: model.limit, dots: this.ratio,
       mode: { whole: look.mode }, showWarp: look.warp, showWeft: look.weft, showLimit: look.limit,
+      seams: { list: model.seams || [0] }, seamCount: { whole: (model.seams || []).length },
       table: { whole: 0 }, signedTable: { whole: 1 },
     });
     gl.bindVertexArray(this.plyArrays);

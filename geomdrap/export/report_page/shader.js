@@ -27,10 +27,12 @@ const FRAGMENT = `#version 300 es
 precision highp float;
 uniform sampler2D table, signedTable;
 uniform vec2 reach, spacing;
-uniform vec3 bareColour, bareStripe, low, middle, high, limitColour, warpColour, weftColour;
+uniform vec3 bareColour, bareStripe, low, middle, high, limitColour, warpColour, weftColour, seamColour;
 uniform float top, limit, dots;
 uniform int mode;
 uniform bool showWarp, showWeft, showLimit, flatView;
+uniform float seams[100]; // as many strips as a roll may give, less one, and one
+uniform int seamCount;
 in vec2 fabric;
 in float angle, light;
 out vec4 colour;
@@ -42,7 +44,7 @@ float line(float coordinate, float every, float width) {
 }
 void main() {
   float size = abs(angle);
-  float slope = fwidth(size);
+  float slope = fwidth(size), along = max(fwidth(fabric.y), 1e-9);
   float warp = line(fabric.y, spacing.y, dots), weft = line(fabric.x, spacing.x, dots);
   if (angle < -300.0 || abs(fabric.x) > reach.x || abs(fabric.y) > reach.y) {
     if (flatView) discard;
@@ -59,6 +61,10 @@ void main() {
   if (showLimit && mode != 2) {
     float away = abs(size - limit) / max(slope, 1e-6);
     c = mix(c, limitColour, 1.0 - smoothstep(dots - 0.5, dots + 0.5, away));
+  }
+  for (int k = 0; k < seamCount; k += 1) {
+    float away = abs(fabric.y - seams[k]) / along;
+    c = mix(c, seamColour, 1.0 - smoothstep(1.5 * dots - 0.5, 1.5 * dots + 0.5, away));
   }
   colour = vec4(c, 1.0);
 }`;
@@ -100,6 +106,7 @@ function setUniforms(gl, program, values) {
     if (typeof value === "boolean") gl.uniform1i(place, value ? 1 : 0);
     else if (typeof value === "number") gl.uniform1f(place, value);
     else if (value.whole !== undefined) gl.uniform1i(place, value.whole);
+    else if (value.list !== undefined) gl.uniform1fv(place, value.list);
     else if (value.length === 16) gl.uniformMatrix4fv(place, false, value);
     else gl[`uniform${value.length}fv`](place, value);
   }

@@ -33,6 +33,7 @@ class Viewer {
     this.look.colours = {
       bareColour: colour("bare"), bareStripe: colour("bare-stripe"), low: colour("low"), middle: colour("middle"),
       high: colour("high"), limitColour: colour("limit"), warpColour: colour("warp"), weftColour: colour("weft"),
+      seamColour: colour("seam"),
     };
   }
 

@@ -1,0 +1,151 @@
+"""The flat pattern laid from strips of a roll of fabric, which is as long as need be and limited along the weft."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.errors import DrapeError
+from geomdrap.fields.band import band
+from geomdrap.fields.contour import signed_area
+from geomdrap.fields.flat import yarn_lines
+from geomdrap.fields.seam_line import FabricFacets, fabric_facets, polylines, stretches_along
+from geomdrap.fields.seams import place_seams
+
+if TYPE_CHECKING:
+    from geomdrap.fields.result import Drape, FlatPattern
+
+
+@dataclass(frozen=True, eq=False)
+class RollStrip:
+    """A strip of the roll, laid along the warp.
+
+    ``v`` and ``u``: from, to, mm, of what the pattern has within, half the overlap at each seam with it; ``contours``
+    (k, 2) mm of that, outer ones counter-clockwise.
+    """
+
+    v: tuple[float, float]
+    u: tuple[float, float]
+    contours: tuple[np.ndarray, ...]
+
+    @property
+    def length(self) -> float:
+        """What is cut off the roll, mm."""
+        return self.u[1] - self.u[0]
+
+    @property
+    def area(self) -> float:
+        """Of the pattern within the strip, mm²."""
+        return float(sum(signed_area(ring) for ring in self.contours))
+
+
+@dataclass(frozen=True, eq=False)
+class Seam:
+    """A seam between two strips, the middle of their overlap.
+
+    ``v`` mm; ``pieces`` (2, 2) mm of the line that lie on the pattern, openings left out; ``on_part``: polylines
+    (k, 3) mm on the part; ``max_shear`` degrees, the largest without its sign, at ``max_shear_at`` (3,) mm.
+    """
+
+    v: float
+    pieces: tuple[np.ndarray, ...]
+    on_part: tuple[np.ndarray, ...]
+    max_shear: float
+    max_shear_at: np.ndarray
+
+    @property
+    def length(self) -> float:
+        """In the flat fabric, mm."""
+        return float(sum(piece[1, 0] - piece[0, 0] for piece in self.pieces))
+
+
+@dataclass(frozen=True, eq=False)
+class Roll:
+    """The strips from -v to +v and the seams between them; ``width`` of the roll and ``overlap`` of strips, mm."""
+
+    width: float
+    overlap: float
+    strips: tuple[RollStrip, ...]
+    seams: tuple[Seam, ...]
+
+    @property
+    def length(self) -> float:
+        """Of the roll that is used, strip after strip, mm."""
+        return sum(strip.length for strip in self.strips)
+
+    @property
+    def waste(self) -> float:
+        """Share 0..1 of that which is not pattern; what lies double in an overlap is none."""
+        used = self.width * self.length
+        return 1.0 - sum(strip.area for strip in self.strips) / used if used > 0.0 else 0.0
+
+
+def lay_on_roll(result: Drape, width: float, overlap: float = 0.0) -> Roll:
+    """Lay the flat pattern of a drape from the fewest strips of a roll ``width`` mm wide.
+
+    Neighbouring strips both reach half the ``overlap`` mm past their seam. Where the seams lie: see ``seams``.
+    Raises DrapeError for a roll that is narrower than the pitch, an overlap that leaves less than that of it, and a
+    pattern that crosses itself.
+    """
+    check_roll(width, overlap, result.net.pitch)
+    flat = result.flat
+    if not flat.outer:
+        return Roll(width, overlap, (), ())
+    v = np.concatenate([ring[:, 1] for ring in flat.outer])
+    low, high = float(v.min()), float(v.max())
+    facets = fabric_facets(result)
+    half = np.inf if result.net.reach is None else float(result.net.reach[0])
+
+    def cost(level: float) -> float:
+        line = stretches_along(facets, level, half)
+        weight = 1.0 + np.abs(line.shear) / result.limit_angle
+        return float((weight * (line.u[:, 1] - line.u[:, 0])).sum())
+
+    levels = place_seams(low, high, width, overlap, cost).tolist()
+    edges = [low, *levels, high]
+    past = 0.5 * overlap
+    strips = [
+        strip_of(flat, low if k == 0 else edges[k] - past, high if k == len(levels) else edges[k + 1] + past)
+        for k in range(len(edges) - 1)
+    ]
+    return Roll(
+        width, overlap, tuple(strips), tuple(seam_at(flat, facets, v, half, result.net.pitch) for v in levels)
+    )
+
+
+def check_roll(width: float, overlap: float, pitch: float) -> None:
+    """Raise DrapeError unless a roll, less the overlap, is at least one pitch wide."""
+    if not (np.isfinite(width) and width > 0.0):
+        raise DrapeError(f"the width of a roll must be a positive number of mm, not {width:g}")
+    if not 0.0 <= overlap < np.inf:
+        raise DrapeError(f"the overlap of seams must be 0 mm or more, not {overlap:g}")
+    if width < pitch:
+        raise DrapeError(
+            f"a roll {width:g} mm wide is narrower than the pitch of {pitch:g} mm: give the width of the roll in mm, "
+            "or a smaller pitch"
+        )
+    if width - overlap < pitch:
+        raise DrapeError(
+            f"an overlap of {overlap:g} mm leaves less of a roll {width:g} mm wide than the pitch of {pitch:g} mm: "
+            "give a smaller overlap"
+        )
+
+
+def strip_of(flat: FlatPattern, low: float, high: float) -> RollStrip:
+    """The strip between two levels, mm."""
+    contours = band((*flat.outer, *flat.inner), low, high)
+    u = np.concatenate([ring[:, 0] for ring in contours]) if contours else np.zeros(1)
+    return RollStrip((low, high), (float(u.min()), float(u.max())), contours)
+
+
+def seam_at(flat: FlatPattern, facets: FabricFacets, level: float, half: float, pitch: float) -> Seam:
+    """The seam at a level, mm, in the flat pattern and on the part."""
+    line = stretches_along(facets, level, half)
+    pieces = yarn_lines((*flat.outer, *flat.inner), np.array([level]), 1)
+    if not len(line.u):
+        return Seam(level, pieces, (), 0.0, np.full(3, np.nan))
+    size = np.abs(line.shear)
+    worst = int(size.argmax())
+    return Seam(level, pieces, polylines(line, pitch), float(size[worst]), line.points[worst].mean(axis=0))
