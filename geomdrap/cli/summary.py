@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape
-    from geomdrap.fields.roll import Roll
+    from geomdrap.fields.strips import Roll
 
 _MOST_BARE = 8  # regions listed one by one
 

@@ -19,7 +19,7 @@ from geomdrap.fields.flat import yarn_lines
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape, FlatPattern
-    from geomdrap.fields.roll import Roll
+    from geomdrap.fields.strips import Roll
 
 Floats = NDArray[np.float64]
 

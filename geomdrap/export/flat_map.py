@@ -12,7 +12,7 @@ from geomdrap.export import palette
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape, FlatPattern
-    from geomdrap.fields.roll import Seam
+    from geomdrap.fields.strips import Seam
 
 Floats = NDArray[np.float64]
 

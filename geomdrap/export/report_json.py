@@ -15,7 +15,7 @@ from geomdrap.export.whole import write_whole
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape
-    from geomdrap.fields.roll import Roll
+    from geomdrap.fields.strips import Roll
     from geomdrap.fishnet import Effect
 
 SCHEMA = "geomdrap.drape/1"

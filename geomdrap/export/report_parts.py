@@ -18,7 +18,7 @@ from geomdrap.fields.figures import least_blank
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape
-    from geomdrap.fields.roll import Roll
+    from geomdrap.fields.strips import Roll
 
 EDGE_ERROR = 1e-4
 """Share of the pitch by which a side may be too long, and still be called right."""

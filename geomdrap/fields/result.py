@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from geomdrap.fields.roll import Roll
+    from geomdrap.fields.strips import Roll
     from geomdrap.fields.trim import Trimmed
     from geomdrap.fishnet import Net
 
