@@ -20,7 +20,7 @@ from geomdrap.fishnet.march import fill_quadrants, lay_generators
 from geomdrap.fishnet.net import Net, cells_of
 from geomdrap.fishnet.pitch import check_pitch, choose_pitch, coarse_facets
 from geomdrap.fishnet.place import APART, all_in_space, place_seed
-from geomdrap.fishnet.relax import relaxed
+from geomdrap.fishnet.relax_net import relaxed
 from geomdrap.fishnet.shear import shears, yarn_directions
 from geomdrap.fishnet.shift import Shift, displaced
 from geomdrap.fishnet.slide import fill_quadrants_sliding, strain_on_axis

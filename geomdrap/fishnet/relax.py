@@ -91,17 +91,6 @@ def law_of(fabric: Fabric) -> Law:
     )
 
 
-def relaxed(net: Net, start: np.ndarray | None = None) -> Net:
-    """The net of least energy of ``net.fabric``, from the geometric net or from nodes ``start`` (nu, nv, 3) mm.
-
-    A warning of the net says so where the forces do not come into balance.
-    """
-    from geomdrap.fishnet.relax_net import as_net
-
-    problem = pose(net, law_of(net.fabric))
-    return as_net(net, problem, relax(problem, net.lattice if start is None else start))
-
-
 def pose(net: Net, law: Law) -> Problem:
     """The problem of relaxing a net under a law. Raises DrapeError where the seed has no cell beside it."""
     lattice, valid = net.lattice, net.lattice_valid

@@ -9,13 +9,22 @@ import numpy as np
 
 from geomdrap.fishnet.grid import Status
 from geomdrap.fishnet.net import cells_of
-from geomdrap.fishnet.relax import GOOD_ENOUGH
+from geomdrap.fishnet.relax import GOOD_ENOUGH, law_of, pose, relax
 
 ON_RIM = 1e-6  # of the pitch: a node no further beyond the rim is on it
 
 if TYPE_CHECKING:
     from geomdrap.fishnet.net import Net
     from geomdrap.fishnet.relax import Problem, Relaxed
+
+
+def relaxed(net: Net, start: np.ndarray | None = None) -> Net:
+    """The net of least energy of ``net.fabric``, from the geometric net or from nodes ``start`` (nu, nv, 3) mm.
+
+    A warning of the net says so where the forces do not come into balance.
+    """
+    problem = pose(net, law_of(net.fabric))
+    return as_net(net, problem, relax(problem, net.lattice if start is None else start))
 
 
 def as_net(net: Net, problem: Problem, found: Relaxed) -> Net:
