@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 CHANNELS = ("along", "across", "normal", "shear", "warp", "weft")
 KEPT = 12  # surfaces with effects on them that are kept, and corrections of coarse nets
+KEPT_NETS = 3
 TOP = 97.0  # percentile of the shear that counts as the largest
 FINE, COARSE = 7000, 900  # nodes of the net, for what costs milliseconds and for what costs seconds
 
@@ -47,7 +48,7 @@ class Experiment:
     were measured; ``noise`` (m,) their standard deviations, mm or degrees; ``measured`` (m,); vectors hold the true
     entries of ``mask``, channel by channel. ``refused``: why a drape with an effect could not be made at some of the
     values tried, by its name. ``frames`` (n, 3, 3): along the warp, across it, and the normal. What is costly is
-    kept: ``surfaces`` with effects on them, and the ``coarseness`` of nets.
+    kept: ``surfaces`` with effects on them, the ``coarseness`` of nets, and the last ``costly`` nets.
     """
 
     surface: Surface
@@ -63,6 +64,7 @@ class Experiment:
     surfaces: dict[str, Surface] = field(default_factory=dict)
     refused: dict[str, str] = field(default_factory=dict)
     coarseness: dict[str, np.ndarray] = field(default_factory=dict)
+    costly: dict[str, Net] = field(default_factory=dict)
 
     def predict(self, effects: Sequence[Effect] = ()) -> np.ndarray:
         """The model's values (m,), NaN where it has none."""
@@ -89,8 +91,14 @@ class Experiment:
 
     def draped(self, effects: Sequence[Effect] = (), pitch: float | None = None) -> Net:
         """The model's net with effects, at the model's own pitch (mm) unless another is given."""
-        lay = self.layup
         pitch = pitch or self.pitches[0]
+        if not any(e.costly for e in effects):
+            return self._draped(effects, pitch)
+        key = f"{pitch!r} {'+'.join(map(repr_of, effects))}"
+        return kept(self.costly, key, lambda: self._draped(effects, pitch), KEPT_NETS)
+
+    def _draped(self, effects: Sequence[Effect], pitch: float) -> Net:
+        lay = self.layup
         surface, others = self._surface_under(effects)
         return drape(
             surface, lay.origin, lay.angle, pitch, effects=others, reference=lay.reference, project=lay.project

@@ -26,6 +26,7 @@ REFINEMENTS = 3  # steps on a finer net
 FEW_STEPS = 7  # of a fit whose every drape is costly
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
 HOPELESS = 0.5  # of the way from the best model back to the base
+FAR = 0.1  # the same, where the best model leaves only noise and a few values were probed
 
 
 @dataclass(frozen=True)
@@ -146,11 +147,12 @@ def add_effect(
     predict = predictor(experiment, model)
     kind = make(effect)
     slow = kind.costly or kind.stage == "surface"
+    explained = slow and _is_noise(least, len(experiment.measured))
     seen = None
     if slow and likely is not None:
         seen = glance(experiment, predict, whiten, likely, base, effect)
-        explained = kind.costly and _is_noise(least, len(experiment.measured))  # else one look is too little
-        if seen.gain < LEAST_GAIN or (explained and _hopeless(whiten, base, seen.after, least)):
+        # where the misfit is not explained one look is too little
+        if seen.gain < LEAST_GAIN or (explained and _hopeless(whiten, base, seen.after, least, HOPELESS)):
             return _not_fitted(model, base, seen)
     start = start_values(experiment, predict, whiten, base, effect, seen)
     low, high = model.bounds
@@ -160,7 +162,8 @@ def add_effect(
     slopes[:, : len(base.values)] = base.fit.slopes
     residual = experiment.measured - predict(start)
     residual = np.where(np.isnan(residual), base.fit.residual, residual)
-    if not _promises(whiten, base, residual, slopes, least if kind.costly else -math.inf):
+    known = least if kind.costly or explained else -math.inf
+    if not _promises(whiten, base, residual, slopes, known, FAR if explained else HOPELESS):
         chi2 = float((whiten(np.nan_to_num(residual)) ** 2).sum())
         if chi2 < base.fit.chi2:
             return Fitted(model, Fit(start, residual, slopes, chi2))
@@ -185,22 +188,25 @@ def _is_noise(chi2: float, values: int) -> bool:
     return chi2 < values + 3.0 * math.sqrt(2.0 * values)
 
 
-def _promises(whiten: Whiten, base: Fitted, residual: np.ndarray, slopes: np.ndarray, least: float) -> bool:
+def _promises(
+    whiten: Whiten, base: Fitted, residual: np.ndarray, slopes: np.ndarray, least: float, far: float
+) -> bool:
     """Whether a fit could gain enough to be worth its drapes, by what its slopes promise.
 
-    Slopes promise too little where the model is curved: HOPELESS is far from the chi-square ``least`` of the best.
+    Slopes promise too little where the model is curved: only what is ``far`` from the chi-square ``least`` of the
+    best is given up.
     """
     before = square_beside(whiten(np.nan_to_num(base.fit.residual)), whiten(base.fit.slopes))
     after = square_beside(whiten(np.nan_to_num(residual)), whiten(slopes))
-    if _hopeless(whiten, base, after, least):
+    if _hopeless(whiten, base, after, least, far):
         return False
     return before - after > max(PROMISE * max(before - len(residual), 0.0), LEAST_PROMISE)
 
 
-def _hopeless(whiten: Whiten, base: Fitted, after: float, least: float) -> bool:
-    """Whether a chi-square foreseen by slopes stays far above the best known."""
+def _hopeless(whiten: Whiten, base: Fitted, after: float, least: float, far: float) -> bool:
+    """Whether a chi-square that slopes foresee stays above the best by a share ``far`` of the way to the base."""
     before = square_beside(whiten(np.nan_to_num(base.fit.residual)), whiten(base.fit.slopes))
-    return after - least > HOPELESS * (before - least)
+    return after - least > far * (before - least)
 
 
 def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:

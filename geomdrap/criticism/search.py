@@ -49,7 +49,7 @@ def try_effects(
     trials, failed = [], []
     least = base.fit.chi2
     likely = _likely(experiment, base)
-    for name in sorted(names, key=lambda name: make(name).costly):
+    for name in sorted(names, key=_effort):
         done(name)
         trial = add_effect(experiment, whiten, base, name, least, likely)
         least = min(least, trial.fit.chi2)
@@ -73,6 +73,12 @@ def try_effects(
     spreads = [deviations(judge.whiten(s)(r.slopes)) for s, r in zip(scatter[1:], linear[1:], strict=True)]
     evidence = _weigh(models, likelihood, squares, errors, spreads, floor)
     return Round(base, tuple(trials), evidence, tuple(scatter), rows, judge, errors[0], tuple(failed))
+
+
+def _effort(name: str) -> int:
+    """How long an effect takes: the slower ones are tried last, when it is known what they have to match."""
+    kind = make(name)
+    return 2 if kind.stage == "surface" else int(kind.costly)
 
 
 def _likely(experiment: Experiment, base: Fitted) -> Whiten:
