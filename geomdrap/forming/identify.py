@@ -6,6 +6,7 @@ and correlations come from the slopes at the solution, under independent reading
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -19,8 +20,12 @@ Curves = Mapping[str, Array]
 Simulate = Callable[[dict[str, float]], Curves]
 """Parameters by name -> readings by column, at the displacements of the test."""
 
-STEP = 2e-3
-"""Change of the logarithm of a parameter from which slopes are taken: well above the noise of an explicit run."""
+STEP = 1e-3
+"""Change of the logarithm of a parameter from which slopes are taken.
+
+Where masses and steps are held (see `held`), slopes of a 45° strip are then within 0.2 % of central differences over
+0.04; at 0.01 the curvature adds 0.7 %, at 0.0005 there is no gain.
+"""
 MIDDLE = 10.0
 """Where the logarithm of a parameter over its start is counted from: the solver's steps are shares of it."""
 FIRST = 0.1
@@ -133,8 +138,9 @@ def identify(
     sigma, correlation = spread_of(slopes)
     values = search.values(place)
     return Identified(
-        names, values, values * sigma, correlation, slopes, scatter, rms, curves, search.runs, converged, search.resized
-    )
+        names, values, values * sigma, correlation, slopes, scatter, rms, curves, search.runs, converged,
+        search.resized,
+    )  # fmt: skip
 
 
 class _SpentError(Exception):
@@ -155,7 +161,7 @@ class _Search:
     ):
         self.simulate, self.measured, self.size, self.used, self.progress = simulate, measured, size, used, progress
         self.names, self.begin = tuple(start), np.array(list(start.values()))
-        self.most = (MOST_RUNS - 1) * len(self.names) - 1  # the rest is for the slopes at the end
+        self.most: float = 0
         self.runs, self.resized = 0, 0
         self._place = np.full(len(self.names), MIDDLE)
         self._seen: dict[bytes, Curves] = {}
@@ -164,7 +170,9 @@ class _Search:
         """The place that was found, with its slopes among what was seen, and whether the search came to an end."""
         while True:
             try:
+                self.most = (MOST_RUNS - 1) * len(self.names) - 1  # the rest is for the slopes at the end
                 place, ended = self._descend()
+                self.most = math.inf
                 self.slopes(place)
                 return place, ended
             except ResizedError:
@@ -181,7 +189,6 @@ class _Search:
             )
             return np.asarray(found[0]), found[-1] in (1, 2, 3, 4)
         except _SpentError:
-            self.most = MOST_RUNS * len(self.names)
             return self.best(), False
 
     def values(self, place: Array) -> Array:
@@ -192,10 +199,10 @@ class _Search:
         if key not in self._seen:
             if self.runs >= self.most:
                 raise _SpentError
+            self._seen[key] = self.simulate(dict(zip(self.names, self.values(place).tolist(), strict=True)))
             self.runs += 1
             if self.progress:
                 self.progress(self.runs)
-            self._seen[key] = self.simulate(dict(zip(self.names, self.values(place).tolist(), strict=True)))
         return self._seen[key]
 
     def residuals(self, place: Array) -> Array:

@@ -94,8 +94,8 @@ def pull(
 ) -> Pulled:
     """Pull ``specimen`` by ``displacement`` mm at ``speed`` mm/min in ``steps`` steps, and read it ``frames`` times.
 
-    Masses are scaled so that the steps are stable, unless ``scale_mass`` is false; for the cloth ``sized_for``, if one
-    is given (see `make_model`). FormingError where a number is out of range.
+    Masses are scaled so that the steps are stable, unless ``scale_mass`` is false; for the cloth ``sized_for``, if
+    one is given (see `make_model`). FormingError where a number is out of range.
     """
     if not (displacement > 0.0 and speed > 0.0 and np.isfinite(displacement) and np.isfinite(speed)):
         raise FormingError(f"displacement and speed must be above 0; got {displacement:g} mm and {speed:g} mm/min")
