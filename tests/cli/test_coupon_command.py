@@ -86,7 +86,7 @@ def test_a_test_with_too_few_steps_says_that_inertia_shows(run: Callable[..., Re
 def test_a_test_that_diverges_keeps_what_it_had_and_ends_with_1(
     run: Callable[..., Result], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("geomdrap.forming.model.mass_for_step", lambda mass, rows, step, _: rows * (step / 4.0) ** 2)
+    monkeypatch.setattr("geomdrap.forming.model.mass_for_step", lambda mass, rows, step, _: rows * (step / 3.0) ** 2)
     monkeypatch.setattr("geomdrap.forming.model.stable_step", lambda *_: np.inf)
     result = run("coupon", "bias-extension", "--displacement", 20, *QUICK, "--json")
     document = json.loads(result.stdout)
