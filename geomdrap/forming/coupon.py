@@ -63,11 +63,16 @@ def uniaxial(
     """
     specimen = strip_specimen(cloth, length, width, angle, cells)
     if displacement is None:
-        displacement = kinematic_lock(length, width, min(angle, 90.0 - angle)) + BEYOND_LOCK
+        displacement = usual_displacement(angle, length, width)
     taken = steps or enough_steps(specimen)
     pulled = pull(specimen, displacement, speed, taken, frames, progress, not keep_mass, sized_for)
     settings = {"angle": angle, "speed": speed, "length": length, "width": width, "displacement": displacement}
     return Coupon("uniaxial", {**settings, **_run_settings(pulled, cells, frames, keep_mass)}, pulled)
+
+
+def usual_displacement(angle: float, length: float = 150.0, width: float = 30.0) -> float:
+    """How far, mm, a strip is pulled unless told otherwise: a little beyond the lock of its pin-jointed net."""
+    return kinematic_lock(length, width, min(angle, 90.0 - angle)) + BEYOND_LOCK
 
 
 def bias_extension(

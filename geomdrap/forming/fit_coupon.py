@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geomdrap.errors import FormingError
 from geomdrap.forming.cloth import Cloth, changed
-from geomdrap.forming.coupon import Coupon, bias_extension, biaxial, picture_frame, uniaxial
+from geomdrap.forming.coupon import Coupon, bias_extension, biaxial, picture_frame, uniaxial, usual_displacement
 from geomdrap.forming.held import Held
 from geomdrap.forming.identify import Curves, Identified, identify, slopes_of, with_more
 
@@ -86,9 +86,10 @@ def fit_coupon(
     start = {name: _start(cloth, name) for name in chosen}
 
     def simulation(values: Mapping[str, float], **other: Any) -> Callable[[dict[str, float]], Curves]:
-        first = with_values(cloth, values)
-        held = Held(test, {**_usual(test), **dict(settings or {}), **other}, first)
-        return lambda v: _held_run(held, with_values(cloth, v), displacement, tuple(measured))
+        asked = {**_usual(test), **dict(settings or {}), **other}
+        held = Held(test, asked, with_values(cloth, values))
+        where = _reached(displacement, asked) if "angle" in other else displacement
+        return lambda v: _held_run(held, with_values(cloth, v), where, tuple(measured))
 
     found = identify(simulation(start), measured, start, progress)
     advice = _advice(test, found, simulation, dict(settings or {}))
@@ -101,6 +102,13 @@ def _held_run(held: Held, cloth: Cloth, displacement: Array, columns: tuple[str,
     if not held.takes(cloth):
         return {c: np.full(len(displacement), np.nan) for c in columns}
     return predict(held.test, cloth, held.settings, displacement, columns)
+
+
+def _reached(displacement: Array, settings: Mapping[str, Any]) -> Array:
+    """Displacements (n,) mm at another angle: no further than a single run goes, or yarns would break."""
+    usual = {key: settings[key] for key in ("length", "width") if key in settings}
+    furthest = usual_displacement(settings["angle"], **usual)
+    return np.asarray(displacement * min(1.0, furthest / float(displacement.max())))
 
 
 def _usable(test: str, readings: Mapping[str, Array]) -> dict[str, Array]:

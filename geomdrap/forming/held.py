@@ -102,7 +102,5 @@ def stiffer(cloth: Cloth, times: float) -> Cloth:
 
 def stiffer_of(a: Cloth, b: Cloth) -> Cloth:
     """``a`` with each modulus the larger of the two."""
-    warp, weft = (
-        changed(f, modulus=max(f.modulus, g.modulus)) for f, g in zip(a.families, b.families, strict=True)
-    )
+    warp, weft = (changed(f, modulus=max(f.modulus, g.modulus)) for f, g in zip(a.families, b.families, strict=True))
     return changed(a, warp=warp, weft=weft, resin=changed(a.resin, modulus=max(a.resin.modulus, b.resin.modulus)))

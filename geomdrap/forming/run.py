@@ -91,9 +91,7 @@ def _averaged(frame: Frame, after: Array) -> Frame:
     return Frame(frame.time, frame.points, 0.5 * (frame.reaction + after), frame.ledger)
 
 
-def _lead(
-    model: Model, state: State, path: Path, steps: int, rest: Ledger, memory: float
-) -> tuple[Array, str]:
+def _lead(model: Model, state: State, path: Path, steps: int, rest: Ledger, memory: float) -> tuple[Array, str]:
     """Take ``steps`` steps along ``path``; the mean reaction (d, 3) N and what went wrong, if anything."""
     total, left = np.zeros_like(state.reaction), steps
     while left:

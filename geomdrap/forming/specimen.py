@@ -106,9 +106,7 @@ def pull(
     duration = displacement / pace
     step = duration / (2 * half * frames)
     damping = DAMPING / duration
-    model = make_model(
-        specimen.sheet, specimen.cloth, step, specimen.held, damping, scale_mass, sized_for=sized_for
-    )
+    model = make_model(specimen.sheet, specimen.cloth, step, specimen.held, damping, scale_mass, sized_for=sized_for)
     rest, way = model.sheet.points[model.driven], specimen.flow[model.driven]
 
     def path(time: float) -> Array:

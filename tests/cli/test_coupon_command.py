@@ -237,7 +237,9 @@ def test_a_fit_that_started_over_says_so(
     )
     _frame_twin(tmp_path / "frame.csv")
     result = run("coupon", "fit", "picture-frame", "frame.csv", "--json", "--outputs", "none")
-    assert "the fit started over 2 times, with masses and steps for a cloth stiffer than it began with" in result.stderr
+    assert (
+        "the fit started over 2 times, with masses and steps for a cloth stiffer than it began with" in result.stderr
+    )
     assert json.loads(result.stdout)["resized"] == 2
 
 

@@ -41,7 +41,9 @@ def test_a_biaxial_twin_with_one_percent_of_noise_is_found_within_five_percent(s
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1])
-def test_a_uniaxial_twin_is_found_within_its_intervals_and_yarns_are_not_told_from_their_undulation(seed: int) -> None:
+def test_a_uniaxial_twin_is_found_within_its_intervals_and_yarns_are_not_told_from_their_undulation(
+    seed: int,
+) -> None:
     """At 45°, forces from 30 N to 20 kN with 1 % of noise, on a mesh coarser than a fit takes, to keep the test short.
 
     The twin is run with eight times the steps of the fit. Its resin is known to 0.3 %. Its yarns are not: sigma is 4 %
@@ -213,6 +215,24 @@ def test_shear_alone_shows_the_ratio_of_stiffnesses_and_a_twin_of_it_is_found() 
     assert found.values[0] == pytest.approx(40_000.0, rel=0.01)
     with pytest.raises(FormingError, match="only the ratio"):
         fit_coupon("bias-extension", readings, start, settings, ("fibre-modulus", "resin-modulus"))
+
+
+def test_further_strips_are_pulled_no_further_than_their_yarns_let_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    pulled: dict[float, float] = {}
+
+    def as_one(test: str, cloth: Cloth, settings: dict, d: np.ndarray, columns: tuple) -> dict[str, np.ndarray]:
+        pulled[settings["angle"]] = float(d.max())
+        return {"force": cloth.warp.modulus * cloth.resin.modulus * d}
+
+    monkeypatch.setattr("geomdrap.forming.fit_coupon.predict", as_one)
+    d = np.linspace(1.0, 50.0, 20)
+    noisy = 5e6 * d * (1.0 + 0.01 * np.random.default_rng(0).normal(size=20))
+    names = ("fibre-modulus", "resin-modulus")
+    fit_coupon("uniaxial", {"displacement": d, "force": noisy}, Cloth(), {"angle": 45.0}, names)
+    assert pulled[45.0] == 50.0
+    assert pulled[0.0] == pytest.approx(3.0)
+    assert pulled[15.0] == pytest.approx(12.65, abs=0.01)
+    assert pulled[30.0] == pytest.approx(42.22, abs=0.01)
 
 
 def test_a_table_is_read_by_series_and_sorted(tmp_path: Path) -> None:
