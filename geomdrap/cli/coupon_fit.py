@@ -107,7 +107,7 @@ def fit(
             for name, columns in readings.items()
         }
         progress.step("Asking what is missing")
-        verdict = _lacks(curves, cloth, settings, split, progress.share) if curves else None
+        verdict, silent = _lacks(curves, cloth, settings, split, progress.share) if curves else (None, silent)
         progress.step("Writing")
         files = write_fit(fits, verdict, folder, outputs)
     say([*(w for name, found in fits.items() for w in _warnings(name, found)), *silent], (), quiet)
@@ -171,21 +171,30 @@ def _to_judge(
 
 def _lacks(
     curves: Mapping[str, Curve], cloth: Cloth, settings: dict[str, Any], split: float, progress: Any
-) -> CurveVerdict:
-    """What the model at the given cloth lacks, by the shear of a bias-extension test."""
-    from geomdrap.criticism.curve_mechanical import mechanical_effects
+) -> tuple[CurveVerdict | None, list[str]]:
+    """What the model at the given cloth lacks, by the shear of a bias-extension test, or why it is not known.
+
+    The fit that was made before does not depend on it, and is kept.
+    """
+    from geomdrap.criticism.curve_mechanical import DivergedError, mechanical_effects
     from geomdrap.criticism.curve_verdict import judge_curves
 
     asked = {"length": LENGTH, "width": WIDTH, **settings}
     furthest = max(float(c.displacement.max()) for c in curves.values())
-    effects = mechanical_effects(cloth, furthest=furthest, progress=progress, **asked)
-    return judge_curves(curves, split, effects)
+    try:
+        effects = mechanical_effects(cloth, furthest=furthest, progress=progress, **asked)
+    except DivergedError as error:
+        return None, [f"no verdict: {error}; the fit is kept"]
+    return judge_curves(curves, split, effects), []
 
 
 def _warnings(series: str, found: CouponFit) -> list[str]:
     """What the user should look at."""
     known = found.identified
     said = [] if known.converged else [f"{series}: the fit did not come to an end; what it had is kept"]
+    if known.resized:
+        again = "with masses and steps for a cloth stiffer than it began with"
+        said.append(f"{series}: the fit started over {_times(known.resized)}, {again}")
     said += [f"{series}: {a} and {b} are not told apart (correlation {c:.2f})" for a, b, c in known.confounded]
     said += [f"{series}: {name} is not shown by these readings" for name in known.loose]
     for name in dict.fromkeys([*known.loose, *(n for a, b, _ in known.confounded for n in (a, b))]):
@@ -195,6 +204,10 @@ def _warnings(series: str, found: CouponFit) -> list[str]:
             share = 100.0 * best.sigma[k] / known.sigma[k]
             said.append(f"{series}: a {best.test} on top would bring sigma of {name} to {share:.0f} % of what it is")
     return said
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
 
 
 def _summary(fits: Mapping[str, CouponFit], verdict: CurveVerdict | None) -> list[str]:

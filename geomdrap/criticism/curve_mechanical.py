@@ -25,6 +25,10 @@ SOFTER = Parameter("log modulus factor", "", (-0.5,), -1.0, 0.5)
 UNDULATED = Parameter("undulation", "", (0.01,), 0.0, 0.02)
 
 
+class DivergedError(FormingError):
+    """A run of the model over which its parameters were to be tried did not reach the end of the curve."""
+
+
 def mechanical_effects(
     cloth: Cloth,
     length: float,
@@ -37,7 +41,7 @@ def mechanical_effects(
     """Effects on the curve of a strip of ``length`` × ``width`` mm of ``cloth``, pulled by up to ``furthest`` mm.
 
     The first is the model itself. Displacements below 0 are taken on straight, since clamps may slack. ``settings``
-    (``speed``, …) are those of `bias_extension`.
+    (``speed``, …) are those of `bias_extension`. DivergedError where a run ends early.
     """
     from scipy.interpolate import CubicSpline
 
@@ -53,7 +57,8 @@ def mechanical_effects(
         )
         pulled = bias_extension(changed, furthest, length, width, cells=cells, **settings).result
         if pulled.stopped:
-            raise FormingError(f"the model cannot stand for the curve: {pulled.stopped}")
+            case = f"with the modulus of the yarns times {factor:.3g} and an undulation of {undulation:g}"
+            raise DivergedError(f"the model cannot stand for the curve {case}: {pulled.stopped}")
         return CubicSpline(pulled.displacement, pulled.shear)
 
     for number, case in enumerate(dict.fromkeys(cases), 1):

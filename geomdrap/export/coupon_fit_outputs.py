@@ -52,6 +52,7 @@ def _fit(fit: CouponFit) -> dict[str, Any]:
             "scatter": found.scatter,
             "readings": len(fit.displacement),
             "runs": found.runs,
+            "resized": found.resized,
             "converged": found.converged,
             "not_told_apart": [list(pair) for pair in found.confounded],
             "not_shown": found.loose,

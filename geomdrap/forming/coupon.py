@@ -54,19 +54,25 @@ def uniaxial(
     frames: int = 50,
     keep_mass: bool = False,
     progress: Progress = None,
+    sized_for: Cloth | None = None,
 ) -> Coupon:
     """Pull a strip whose warp lies ``angle`` deg from its length; see `strip_specimen` and `pull`.
 
     ``displacement`` mm, None: to 3 mm beyond the lock of the pin-jointed net; ``speed`` mm/min; ``steps`` None:
-    enough.
+    enough; ``sized_for``: the cloth for which masses are scaled, None: ``cloth``.
     """
     specimen = strip_specimen(cloth, length, width, angle, cells)
     if displacement is None:
-        displacement = kinematic_lock(length, width, min(angle, 90.0 - angle)) + BEYOND_LOCK
+        displacement = usual_displacement(angle, length, width)
     taken = steps or enough_steps(specimen)
-    pulled = pull(specimen, displacement, speed, taken, frames, progress, scale_mass=not keep_mass)
+    pulled = pull(specimen, displacement, speed, taken, frames, progress, not keep_mass, sized_for)
     settings = {"angle": angle, "speed": speed, "length": length, "width": width, "displacement": displacement}
     return Coupon("uniaxial", {**settings, **_run_settings(pulled, cells, frames, keep_mass)}, pulled)
+
+
+def usual_displacement(angle: float, length: float = 150.0, width: float = 30.0) -> float:
+    """How far, mm, a strip is pulled unless told otherwise: a little beyond the lock of its pin-jointed net."""
+    return kinematic_lock(length, width, min(angle, 90.0 - angle)) + BEYOND_LOCK
 
 
 def bias_extension(
@@ -102,11 +108,12 @@ def biaxial(
     frames: int = 50,
     keep_mass: bool = False,
     progress: Progress = None,
+    sized_for: Cloth | None = None,
 ) -> Coupon:
     """Pull a square along warp and weft at once; see `biaxial_specimen` and `pull`."""
     specimen = biaxial_specimen(cloth, cells=cells, ratio=ratio)
     taken = steps or enough_steps(specimen)
-    pulled = pull(specimen, displacement, speed, taken, frames, progress, scale_mass=not keep_mass)
+    pulled = pull(specimen, displacement, speed, taken, frames, progress, not keep_mass, sized_for)
     settings = {"displacement": displacement, "speed": speed, "ratio": ratio}
     return Coupon("biaxial", {**settings, **_run_settings(pulled, cells, frames, keep_mass)}, pulled)
 

@@ -1,8 +1,9 @@
 """Explicit central differences: velocities live between the steps, positions and forces on them.
 
-v⁺ = [(1 − αΔt/2) v⁻ + Δt (f/m + α w)] / (1 + αΔt/2), x ← x + Δt v⁺: the damping force −α m (v − w) works against what
-differs from the even flow w that the grips impose. Work is summed up by the trapezoidal rule along the way,
-which is exact for this scheme, so that an energy balance shows errors of the laws and not of the book-keeping.
+v⁺ = [(1 − αΔt/2) v⁻ + Δt (f/m + α w)] / (1 + αΔt/2), x ← x + Δt v⁺: the damping force −α m (v − w) works against
+what differs from the flow w, the even one that the grips impose, or a mean over the recent past. Work is summed up
+by the trapezoidal rule along the way, which is exact for this scheme, so that an energy balance shows errors of the
+laws and not of the book-keeping.
 """
 
 from __future__ import annotations

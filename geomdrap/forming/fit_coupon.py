@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from geomdrap.errors import FormingError
 from geomdrap.forming.cloth import Cloth, changed
-from geomdrap.forming.coupon import Coupon, bias_extension, biaxial, picture_frame, uniaxial
+from geomdrap.forming.coupon import Coupon, bias_extension, biaxial, picture_frame, uniaxial, usual_displacement
+from geomdrap.forming.held import Held
 from geomdrap.forming.identify import Curves, Identified, identify, slopes_of, with_more
 
 Array = NDArray[np.float64]
@@ -84,14 +85,30 @@ def fit_coupon(
     displacement = readings["displacement"]
     start = {name: _start(cloth, name) for name in chosen}
 
-    def simulation(**other: Any) -> Callable[[dict[str, float]], Curves]:
-        asked = {**dict(settings or {}), **other}
-        return lambda values: predict(test, with_values(cloth, values), asked, displacement, tuple(measured))
+    def simulation(values: Mapping[str, float], **other: Any) -> Callable[[dict[str, float]], Curves]:
+        asked = {**_usual(test), **dict(settings or {}), **other}
+        held = Held(test, asked, with_values(cloth, values))
+        where = _reached(displacement, asked) if "angle" in other else displacement
+        return lambda v: _held_run(held, with_values(cloth, v), where, tuple(measured))
 
-    found = identify(simulation(), measured, start, progress)
+    found = identify(simulation(start), measured, start, progress)
     advice = _advice(test, found, simulation, dict(settings or {}))
     values = dict(zip(found.names, found.values.tolist(), strict=True))
     return CouponFit(test, with_values(cloth, values), displacement, measured, dict(found.curves), found, advice)
+
+
+def _held_run(held: Held, cloth: Cloth, displacement: Array, columns: tuple[str, ...]) -> Curves:
+    """Columns of a run with masses and steps held; NaN for a cloth that is out of all proportion."""
+    if not held.takes(cloth):
+        return {c: np.full(len(displacement), np.nan) for c in columns}
+    return predict(held.test, cloth, held.settings, displacement, columns)
+
+
+def _reached(displacement: Array, settings: Mapping[str, Any]) -> Array:
+    """Displacements (n,) mm at another angle: no further than a single run goes, or yarns would break."""
+    usual = {key: settings[key] for key in ("length", "width") if key in settings}
+    furthest = usual_displacement(settings["angle"], **usual)
+    return np.asarray(displacement * min(1.0, furthest / float(displacement.max())))
 
 
 def _usable(test: str, readings: Mapping[str, Array]) -> dict[str, Array]:
@@ -171,8 +188,13 @@ def _simulated(test: str, cloth: Cloth, settings: Mapping[str, Any], furthest: f
     asked = {**settings, "displacement": furthest}
     if test == "biaxial":
         return biaxial(cloth, **asked)
-    asked = {"cells": CELLS, **asked}
+    asked = {**_usual(test), **asked}
     return uniaxial(cloth, **asked) if test == "uniaxial" else bias_extension(cloth, **asked)
+
+
+def _usual(test: str) -> dict[str, Any]:
+    """Settings of the runs of a fit, where they are not those of a single run."""
+    return {"cells": CELLS} if test in ("uniaxial", "bias-extension") else {}
 
 
 def _advice(
@@ -186,5 +208,6 @@ def _advice(
     for name, other in FURTHER[test]:
         if all(settings.get(k) == v for k, v in other.items()):
             continue
-        given.append(Advice(name, with_more(found, slopes_of(simulation(**other), found, scatter))))
+        runs = simulation(dict(zip(found.names, found.values.tolist(), strict=True)), **other)
+        given.append(Advice(name, with_more(found, slopes_of(runs, found, scatter))))
     return tuple(given)

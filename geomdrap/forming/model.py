@@ -57,12 +57,14 @@ def make_model(
     damping: float = 0.0,
     scale_mass: bool = True,
     safety: float = SAFETY,
+    sized_for: Cloth | None = None,
 ) -> Model:
     """Pack ``sheet`` and ``cloth`` for stepping by ``step`` s.
 
     With ``scale_mass`` nodes are made heavier where the step asks for it, so that it is ``safety`` times the bound;
     without, FormingError where the step is over the bound. ``step`` None: ``safety`` times the bound of the masses as
-    they are. ``damping`` 1/s: forces of −damping × mass × velocity.
+    they are. ``damping`` 1/s: forces of −damping × mass × velocity. ``sized_for``: masses are scaled as this cloth
+    needs, so that runs of cloths that are no stiffer have the same; None: as ``cloth`` does.
     """
     if damping < 0.0 or not 0.0 < safety <= 1.0 or (step is not None and not step > 0.0):
         raise FormingError(
@@ -77,7 +79,8 @@ def make_model(
     if step is None:
         step = safety * stable_step(natural, rows, free)
     elif scale_mass:
-        mass = mass_for_step(natural, rows, step, safety)
+        needed = rows if sized_for is None else row_sums(sheet, sized_for)
+        mass = mass_for_step(natural, needed, step, safety)
     limit = stable_step(mass, rows, free)
     if not step <= limit * (1.0 + 1e-9):
         raise FormingError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -58,10 +59,12 @@ def drive(
     frames: int,
     flow: Array | None = None,
     progress: Callable[[float], None] | None = None,
+    memory: float = math.inf,
 ) -> Run:
     """Lead the driven nodes along ``path`` for ``frames`` frames of ``steps`` / ``frames`` steps.
 
-    With ``flow`` (n, 3) mm/s all nodes start so, and damping acts on what differs from it. The path is followed
+    With ``flow`` (n, 3) mm/s all nodes start so, and damping acts on what differs from it. The flow follows the nodes
+    with ``memory`` s: slow motion is not held back then, and vibrations are. The path is followed
     straight within chunks of steps, and half a frame beyond the end, for the mean of the last one. A run that
     diverges stops; it keeps the frames before, and says where and when.
     """
@@ -72,7 +75,7 @@ def drive(
     rest = Frame(0.0, state.points.copy(), np.zeros_like(state.reaction), ledger_of(model, state))
     done, waiting = [rest], None
     for number in range(2 * frames + 1):
-        mean, fault = _lead(model, state, path, half, rest.ledger)
+        mean, fault = _lead(model, state, path, half, rest.ledger, memory)
         if fault:
             return Run(model, tuple(done), state, f"{fault}; what came before is kept")
         if waiting is not None and number % 2 == 0:
@@ -88,19 +91,27 @@ def _averaged(frame: Frame, after: Array) -> Frame:
     return Frame(frame.time, frame.points, 0.5 * (frame.reaction + after), frame.ledger)
 
 
-def _lead(model: Model, state: State, path: Path, steps: int, rest: Ledger) -> tuple[Array, str]:
+def _lead(model: Model, state: State, path: Path, steps: int, rest: Ledger, memory: float) -> tuple[Array, str]:
     """Take ``steps`` steps along ``path``; the mean reaction (d, 3) N and what went wrong, if anything."""
     total, left = np.zeros_like(state.reaction), steps
     while left:
         now = min(left, CHUNK)
         left -= now
+        before = state.x.copy()
         take_steps(model, state, now, path(state.time + now * model.step))
+        _follow(state, before, now * model.step, memory)
         book_resin_loss(model, state, now * model.step)
         total += now * state.reaction
         fault = divergence(model, state, rest)
         if fault:
             return total / steps, fault
     return total / steps, ""
+
+
+def _follow(state: State, before: Array, duration: float, memory: float) -> None:
+    """Let the flow forget what it was, for the mean velocity since the nodes were at ``before`` (3n,) mm."""
+    mean = (state.x - before) / duration
+    state.flow += (mean - state.flow) * -math.expm1(-duration / memory)
 
 
 def divergence(model: Model, state: State, rest: Ledger) -> str:

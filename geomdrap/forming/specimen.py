@@ -18,8 +18,10 @@ from geomdrap.forming.sheet import Sheet
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-DAMPING = 12.0
-"""Mass damping times the duration of a run: vibrations fade within a tenth of it."""
+DAMPING = 48.0
+"""Mass damping times the duration of a run: vibrations fade within a twentieth of it."""
+MEMORY = 0.02
+"""Share of the duration over which the flow is a mean: longer than vibrations, shorter than what a curve shows."""
 SLOW = 0.02
 """Share of kinetic energy, from a quarter of the way on, beyond which a run is no longer a slow one."""
 
@@ -29,7 +31,7 @@ class Specimen:
     """A sheet in grips.
 
     ``held`` (d,) nodes; ``flow`` (n, 3): by how much each node moves per mm of displacement; for those that are not
-    held only a first guess, at which they start and against which vibrations are damped. ``readers``: for each force
+    held only a first guess, at which they start. ``readers``: for each force
     that the machine reads, its name and weights (n, 3), which make one number of the reactions.
     """
 
@@ -88,11 +90,12 @@ def pull(
     frames: int = 50,
     progress: Callable[[float], None] | None = None,
     scale_mass: bool = True,
+    sized_for: Cloth | None = None,
 ) -> Pulled:
     """Pull ``specimen`` by ``displacement`` mm at ``speed`` mm/min in ``steps`` steps, and read it ``frames`` times.
 
-    Masses are scaled so that the steps are stable, unless ``scale_mass`` is false. FormingError where a number is out
-    of range.
+    Masses are scaled so that the steps are stable, unless ``scale_mass`` is false; for the cloth ``sized_for``, if
+    one is given (see `make_model`). FormingError where a number is out of range.
     """
     if not (displacement > 0.0 and speed > 0.0 and np.isfinite(displacement) and np.isfinite(speed)):
         raise FormingError(f"displacement and speed must be above 0; got {displacement:g} mm and {speed:g} mm/min")
@@ -102,13 +105,14 @@ def pull(
     half = max(1, round(0.5 * steps / frames))
     duration = displacement / pace
     step = duration / (2 * half * frames)
-    model = make_model(specimen.sheet, specimen.cloth, step, specimen.held, DAMPING / duration, scale_mass)
+    damping = DAMPING / duration
+    model = make_model(specimen.sheet, specimen.cloth, step, specimen.held, damping, scale_mass, sized_for=sized_for)
     rest, way = model.sheet.points[model.driven], specimen.flow[model.driven]
 
     def path(time: float) -> Array:
         return rest + pace * time * way
 
-    run = drive(model, path, 2 * half * frames, frames, pace * specimen.flow, progress)
+    run = drive(model, path, 2 * half * frames, frames, pace * specimen.flow, progress, MEMORY * duration)
     return _read(specimen, run, pace)
 
 

@@ -86,7 +86,7 @@ def test_a_test_with_too_few_steps_says_that_inertia_shows(run: Callable[..., Re
 def test_a_test_that_diverges_keeps_what_it_had_and_ends_with_1(
     run: Callable[..., Result], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("geomdrap.forming.model.mass_for_step", lambda mass, rows, step, _: rows * (step / 2.8) ** 2)
+    monkeypatch.setattr("geomdrap.forming.model.mass_for_step", lambda mass, rows, step, _: rows * (step / 3.0) ** 2)
     monkeypatch.setattr("geomdrap.forming.model.stable_step", lambda *_: np.inf)
     result = run("coupon", "bias-extension", "--displacement", 20, *QUICK, "--json")
     document = json.loads(result.stdout)
@@ -193,6 +193,54 @@ def test_a_fit_without_a_verdict_says_why(run: Callable[..., Result], tmp_path: 
     result = run("coupon", "fit", "bias-extension", "t.csv", *options, "--json")
     assert said in result.stderr
     assert "lacks" not in json.loads(result.stdout)
+
+
+def test_a_fit_is_kept_where_a_run_for_the_verdict_diverges(
+    run: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from dataclasses import replace
+
+    from geomdrap.criticism import curve_mechanical
+    from geomdrap.forming.coupon import bias_extension
+
+    def diverged(*arguments: object, **settings: object) -> object:
+        made = bias_extension(*arguments, **settings)  # type: ignore[arg-type]
+        run = replace(made.result.run, stopped="the run diverged at 3 s; what came before is kept")
+        return replace(made, result=replace(made.result, run=run))
+
+    monkeypatch.setattr(curve_mechanical, "bias_extension", diverged)
+    _shear_table(tmp_path / "t.csv", "".join(f"a,{d},{9 * d},{0.9 * d}\n" for d in range(1, 13)))
+    options = ("--cells", 2, "--steps", 800, "--fit", "resin-modulus", "--elastic")
+    result = run("coupon", "fit", "bias-extension", "t.csv", *options, "--json")
+    document = json.loads(result.stdout)
+    assert result.exit_code == 0
+    assert document["parameters"]["resin-modulus"]["value"] > 0.0
+    assert document["resized"] == 0
+    assert "lacks" not in document
+    assert (tmp_path / "fit" / "fit.json").exists()
+    assert "no verdict: the model cannot stand for the curve" in result.stderr
+    assert result.stderr.rstrip().endswith("the run diverged at 3 s; what came before is kept; the fit is kept")
+
+
+def test_a_fit_that_started_over_says_so(
+    run: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from dataclasses import replace
+
+    from geomdrap.forming import fit_coupon
+
+    fit = fit_coupon.fit_coupon
+    monkeypatch.setattr(
+        fit_coupon,
+        "fit_coupon",
+        lambda *arguments: replace(made := fit(*arguments), identified=replace(made.identified, resized=2)),
+    )
+    _frame_twin(tmp_path / "frame.csv")
+    result = run("coupon", "fit", "picture-frame", "frame.csv", "--json", "--outputs", "none")
+    assert (
+        "the fit started over 2 times, with masses and steps for a cloth stiffer than it began with" in result.stderr
+    )
+    assert json.loads(result.stdout)["resized"] == 2
 
 
 def test_fitting_tells_how_many_runs_it_has_made(

@@ -173,3 +173,19 @@ def test_the_mechanical_effects_run_no_case_twice(monkeypatch):
     assert len(runs) == len(set(runs)) == 10
     assert shares == pytest.approx(np.arange(1, 11) / 10.0)
     assert next(iter(effects)) == "mechanical"
+
+
+def test_a_run_of_the_mechanical_effects_that_diverged_is_named(monkeypatch):
+    from types import SimpleNamespace
+
+    from geomdrap.criticism import curve_mechanical
+    from geomdrap.forming import Cloth
+
+    def pulled(cloth, furthest, *_, **__):
+        d = np.linspace(0.0, furthest, 9)
+        stopped = "the run diverged at 3 s" if cloth.warp.modulus > 130_001.0 else ""
+        return SimpleNamespace(result=SimpleNamespace(displacement=d, shear=pin_jointed(d, 120.0), stopped=stopped))
+
+    monkeypatch.setattr(curve_mechanical, "bias_extension", pulled)
+    with pytest.raises(curve_mechanical.DivergedError, match=r"yarns times 3.16 .* 0.005: the run diverged at 3 s"):
+        curve_mechanical.mechanical_effects(Cloth(), 150.0, 30.0, 20.0)

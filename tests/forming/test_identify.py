@@ -41,15 +41,19 @@ def test_a_biaxial_twin_with_one_percent_of_noise_is_found_within_five_percent(s
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1])
-def test_a_uniaxial_twin_with_one_percent_of_noise_is_found_within_five_percent(seed: int) -> None:
-    """At 45°, its forces from 40 N to 20 kN, on a mesh coarser than a fit takes by itself, to keep the test short.
+def test_a_uniaxial_twin_is_found_within_its_intervals_and_yarns_are_not_told_from_their_undulation(
+    seed: int,
+) -> None:
+    """At 45°, forces from 30 N to 20 kN with 1 % of noise, on a mesh coarser than a fit takes, to keep the test short.
 
-    With that mesh and the first seed the errors are 5 % of the modulus, 10 % of the undulation, 0.1 % of the resin.
+    The twin is run with eight times the steps of the fit. Its resin is known to 0.3 %. Its yarns are not: sigma is 4 %
+    of their modulus and 10 % of their undulation, whose correlation is 0.97, so that no fit can be held to 5 %.
     """
     truth = {"fibre-modulus": 130_000.0, "undulation": 0.005, "resin-modulus": 45.0}
     far = {"fibre-modulus": 90_000.0, "undulation": 0.008, "resin-modulus": 60.0}
     settings, d = {"angle": 45.0, "cells": 6}, np.linspace(1.25, 50.0, 40)
-    clean = predict("uniaxial", with_values(Cloth(), truth), settings, d, ("force",))["force"]
+    fine = {**settings, "steps": 250_000}
+    clean = predict("uniaxial", with_values(Cloth(), truth), fine, d, ("force",))["force"]
     assert np.isfinite(clean).all()
     noisy = clean * (1.0 + 0.01 * np.random.default_rng(seed).normal(size=len(d)))
     readings = {"displacement": d, "force": noisy}
@@ -57,8 +61,14 @@ def test_a_uniaxial_twin_with_one_percent_of_noise_is_found_within_five_percent(
     assert found.converged
     assert found.runs < 60
     for name, value, sigma in zip(found.names, found.values, found.sigma, strict=True):
-        assert value == pytest.approx(truth[name], rel=0.05)
         assert abs(value - truth[name]) < 3.0 * sigma
+    share = dict(zip(found.names, found.sigma / found.values, strict=True))
+    assert share["resin-modulus"] < 0.005
+    assert found.values[2] == pytest.approx(truth["resin-modulus"], rel=0.01)
+    assert 0.02 < share["fibre-modulus"] < 0.06
+    assert 0.06 < share["undulation"] < 0.2
+    assert [pair[:2] for pair in found.confounded] == [("fibre-modulus", "undulation")]
+    assert all(0.006 < s < 0.015 for s in found.scatter.values())
 
 
 @pytest.mark.slow
@@ -205,6 +215,24 @@ def test_shear_alone_shows_the_ratio_of_stiffnesses_and_a_twin_of_it_is_found() 
     assert found.values[0] == pytest.approx(40_000.0, rel=0.01)
     with pytest.raises(FormingError, match="only the ratio"):
         fit_coupon("bias-extension", readings, start, settings, ("fibre-modulus", "resin-modulus"))
+
+
+def test_further_strips_are_pulled_no_further_than_their_yarns_let_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    pulled: dict[float, float] = {}
+
+    def as_one(test: str, cloth: Cloth, settings: dict, d: np.ndarray, columns: tuple) -> dict[str, np.ndarray]:
+        pulled[settings["angle"]] = float(d.max())
+        return {"force": cloth.warp.modulus * cloth.resin.modulus * d}
+
+    monkeypatch.setattr("geomdrap.forming.fit_coupon.predict", as_one)
+    d = np.linspace(1.0, 50.0, 20)
+    noisy = 5e6 * d * (1.0 + 0.01 * np.random.default_rng(0).normal(size=20))
+    names = ("fibre-modulus", "resin-modulus")
+    fit_coupon("uniaxial", {"displacement": d, "force": noisy}, Cloth(), {"angle": 45.0}, names)
+    assert pulled[45.0] == 50.0
+    assert pulled[0.0] == pytest.approx(3.0)
+    assert pulled[15.0] == pytest.approx(12.65, abs=0.01)
+    assert pulled[30.0] == pytest.approx(42.22, abs=0.01)
 
 
 def test_a_table_is_read_by_series_and_sorted(tmp_path: Path) -> None:
