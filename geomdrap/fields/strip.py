@@ -55,15 +55,18 @@ def agrees(points: np.ndarray, triangle: np.ndarray, at: np.ndarray, tangent: np
     Where two stretches of the net meet at the corner of a box a vertex has coordinates of one of them, which lead
     elsewhere in the facets of the other.
     """
+    near = (OFF * side) ** 2
     for k in range(3):
         m = (k + 1) % 3
+        a, b = triangle[k], triangle[m]
         dp, dq = at[m, 0] - at[k, 0], at[m, 1] - at[k, 1]
         length = off = 0.0
         for c in range(3):
-            way = points[triangle[m], c] - points[triangle[k], c]
+            way = points[b, c] - points[a, c]
             length += way * way
             off += (dp * tangent[0, c] + dq * tangent[1, c] - way) ** 2
-        if math.sqrt(off) > OFF * side + OFF_SHARE * math.sqrt(length):
+        # most are nearer than the first of both allows by itself: no root is needed to see that
+        if off > near and math.sqrt(off) > OFF * side + OFF_SHARE * math.sqrt(length):
             return False
     return True
 
@@ -224,7 +227,13 @@ def continue_beyond(
     ways = [(0.0, 0)]  # edges 3·facet + edge over which to go on, by how far from the net: the nearest lead best
     ways.pop()
     for n in range(tail):
-        add_ways(points, triangles, neighbours, kind, queue[n], 0.0, ways)
+        f = queue[n]
+        inside = True  # as most are: not worth a call
+        for k in range(3):
+            g = neighbours[f, k]
+            inside &= g < 0 or kind[g] != BARE
+        if not inside:
+            add_ways(points, triangles, neighbours, kind, f, 0.0, ways)
     while len(ways) > 0:
         away, code = heappop(ways)
         f, k = code // 3, code % 3
