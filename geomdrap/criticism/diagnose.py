@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
-from geomdrap.criticism.evidence import FAMILY, LEAST_SHARE, rivals
+from geomdrap.criticism.evidence import FAMILY, LEAST_SHARE, alike_in_what_they_leave, rivals
 from geomdrap.criticism.experiment import Experiment, Layup
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
@@ -149,7 +149,11 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         model, scatter = rounds[0].trial(LOCKING)
         experiment, model = _final(meant, model, scatter)
         left = left_over(experiment, model, scatter)
-    verdict, candidates = _verdict(experiment, model, scatter, names, alike, left, worth_more(rounds[0], model))
+    unexplained = left.structured and worth_more(rounds[0], model) and names != [LOCKING]
+    if unexplained and len(alike) == 1:
+        near = alike_in_what_they_leave(rounds[len(names) - 1].evidence)
+        alike = near if names[-1] in near else alike
+    verdict, candidates = _verdict(experiment, model, scatter, names, alike, unexplained)
     steps = _steps(experiment, rounds, names, model)
     return Diagnosis(
         verdict=verdict,
@@ -227,13 +231,12 @@ def _verdict(
     scatter: Scatter,
     names: Sequence[str],
     alike: Sequence[str],
-    left: Leftover,
     unexplained: bool,
 ) -> tuple[str, tuple[str, ...]]:
     """Verdict and candidates."""
     if names and len(alike) > 1:
         return AMBIGUOUS, (*names[:-1], *alike)
-    if left.structured and unexplained and list(names) != [LOCKING]:
+    if unexplained:
         return UNKNOWN, tuple(names)
     if names:
         return "+".join(names), tuple(names)

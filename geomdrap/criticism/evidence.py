@@ -18,6 +18,7 @@ FORETELLS = 0.99  # of the held-out error without the effect
 LEAST_SHARE = 0.15  # of the misfit above the noise: a smaller one is listed, not named
 RIVAL = 6.0  # of 2 log-likelihood: effects this close to the best cannot be told from it
 RIVAL_SHARE = 0.01  # of what the best explains: nor those that explain all but this much of it
+MOST, AS_MUCH = 0.9, 2.0  # share of the misfit that is nearly all of it, and times what the best leaves of it
 
 
 @dataclass(frozen=True)
@@ -77,3 +78,13 @@ def rivals(evidence: Sequence[Evidence]) -> tuple[str, ...]:
     best = found[0]
     margin = max(RIVAL, RIVAL_SHARE * best.gain)
     return tuple(e.name for e in found if best.gain - 2.0 * best.unknowns - (e.gain - 2.0 * e.unknowns) < margin)
+
+
+def alike_in_what_they_leave(evidence: Sequence[Evidence]) -> tuple[str, ...]:
+    """Effects that explain nearly all of the misfit, and leave about as little of it as the best of them, best first.
+
+    For where the best leaves structure: no model of it is exact then, and likelihood, which takes models at their
+    word, tells effects apart by what the models lack.
+    """
+    found = sorted((e for e in evidence if e.found and e.share >= MOST), key=lambda e: -e.share)
+    return tuple(e.name for e in found if 1.0 - e.share <= AS_MUCH * (1.0 - found[0].share))

@@ -38,8 +38,10 @@ def hints_for(
     if verdict == AMBIGUOUS and len(candidates) > 1:
         first, second = (rounds[-1 if len(candidates) == 2 else 0].trial(n)[0] for n in candidates[-2:])
         hints.append(where_they_differ(experiment, first, second))
+    places = ", ".join(SEEN[c] for c in left.channels) or "everywhere a little"
+    if verdict == AMBIGUOUS and left.structured:
+        hints.append(f"none of the candidates explains all of it: {left.size:.1f} times the noise is left, {places}")
     if verdict == UNKNOWN:
-        places = ", ".join(SEEN[c] for c in left.channels) or "everywhere a little"
         hints.append(
             f"something is left that no effect of the library explains, {left.size:.1f} times the noise, {places}"
         )

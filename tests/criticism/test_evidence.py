@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geomdrap.criticism.evidence import Evidence, among_all, chance, rivals
+from geomdrap.criticism.evidence import Evidence, alike_in_what_they_leave, among_all, chance, rivals
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.model import Fitted, Model
 from geomdrap.criticism.search import _in_range
@@ -54,3 +54,12 @@ def test_only_what_acts_at_once_need_not_be_clearly_off_its_neutral_value(effect
     assert _in_range(found, np.full(4, 1e-3)) == acts
     assert _in_range(found, np.full(4, 1e-5))
     assert not _in_range(replace(found, fit=replace(found.fit, values=model.neutral)), np.full(4, 1e-5))
+
+
+def test_effects_that_leave_as_little_as_the_best_are_alike_whatever_their_likelihood():
+    best = replace(GOOD, share=0.993, gain=1600.0)
+    close, far = replace(GOOD, name="close", share=0.988, gain=1500.0), replace(GOOD, name="far", share=0.95)
+    assert rivals([far, close, best]) == ("slip",)
+    assert alike_in_what_they_leave([far, close, best]) == ("slip", "close")
+    assert alike_in_what_they_leave([replace(GOOD, share=0.6), replace(close, share=0.59)]) == ()
+    assert alike_in_what_they_leave([best, replace(close, in_range=False)]) == ("slip",)
