@@ -15,6 +15,6 @@ def read_part(part: Path, unit: str, tolerance: float | None, flip: bool, cuts: 
     from geomdrap.sweep.origins import read_points
 
     surface = read_surface(part, unit=unit, tolerance=tolerance, flip=flip)
-    for file in cuts:
-        surface = surface.cut(read_points(file), file.name)
+    if cuts:
+        surface = surface.cut(*(read_points(file) for file in cuts), names=[file.name for file in cuts])
     return surface

@@ -175,8 +175,18 @@ def _require_cells(grid: Grid, surface: Surface, pitch: float) -> None:
 
 def _cuts(surface: Surface) -> tuple[str, ...]:
     """A note on the lines that the part is cut along."""
-    names, lengths = [name for name, _ in surface.cuts], [length for _, length in surface.cuts]
-    return (f"the part is cut along {', '.join(names)}: {sum(lengths):.4g} mm",) if names else ()
+    names = ", ".join(dict.fromkeys(surface.cuts))
+    return (f"the part is cut along {names}: {surface.cut_length:.4g} mm",) if names else ()
+
+
+def _cut_off(surface: Surface, part: Surface) -> tuple[str, ...]:
+    """A warning where the cuts part the surface, so that a piece of it is left out."""
+    if not surface.cuts or part is surface:
+        return ()
+    return (
+        f"{surface.source} lies in {surface.n_components} pieces with its cuts: the one with the origin is draped, "
+        f"{part.area:.6g} mm², and {surface.area - part.area:.6g} mm² are left out; drape these from an origin on them",
+    )
 
 
 def unit_hint(surface: Surface) -> tuple[str, ...]:
@@ -279,5 +289,5 @@ def _as_net(
         shear=shear,
         sides=_sides_as_they_lie(grid, fabric),
         notes=notes,
-        warnings=(*unit_hint(surface), *coarse_facets(part, pitch)),
+        warnings=(*unit_hint(surface), *_cut_off(surface, part), *coarse_facets(part, pitch)),
     )

@@ -6,38 +6,48 @@ two sides then forget each other. The surface stays what it was to the last digi
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from geomdrap.errors import SurfaceError
 from geomdrap.surface import topology
 from geomdrap.surface.degenerate import heights
-from geomdrap.surface.edit import NEAR, Editable
+from geomdrap.surface.edit import NEAR, Editable, ordered
 from geomdrap.surface.prepare import Prepared
 from geomdrap.surface.types import Floats, Ints
 
 DETOUR = 4.0  # lengths of its chord that the section between two points may take over the part
 
 
-def cut_along(mesh: Prepared, points: Floats, faces: Ints, normals: Floats, name: str) -> tuple[Prepared, float]:
-    """A mesh cut along a line through points (k, 3) mm that lie on its faces (k,), and the length of the cut, mm.
+class Line(NamedTuple):
+    """A line to cut along: points (k, 3) mm that lie on faces (k,) with normals (k, 3), and how messages call it."""
 
-    Between two points the cut runs where the plane through both and along the mean of their ``normals`` (k, 3) meets
-    the part. ``name`` is how messages call the line. Raises SurfaceError where that does not lead from one to the
-    other.
+    points: Floats
+    faces: Ints
+    normals: Floats
+    name: str
+
+
+def cut_along(mesh: Prepared, lines: Sequence[Line]) -> tuple[Prepared, float]:
+    """A mesh cut along lines, which may cross and touch, and the length of all cuts, mm.
+
+    Between two points a cut runs where the plane through both and along the mean of their normals meets the part.
+    Raises SurfaceError where that does not lead from one to the other.
     """
     edit = Editable(mesh.points, mesh.triangles, mesh.neighbours, mesh.neighbour_edge)
-    stops = [edit.insert(int(face), point) for face, point in zip(faces, points, strict=True)]
-    path = [stops[0]]
-    for k, (start, end) in enumerate(pairwise(stops)):
-        if start != end:
-            path += _section(edit, start, end, normals[k] + normals[k + 1], name)
-    if len(path) < 2:
-        raise SurfaceError(f"{name} comes to a single point when it is laid onto the part; use a longer line")
-    length = float(np.linalg.norm(np.diff(edit.points[path], axis=0), axis=1).sum())
-    return _parted(mesh, edit, path), length
+    for line in lines:
+        stops = [edit.insert(int(face), point) for face, point in zip(line.faces, line.points, strict=True)]
+        if len(set(stops)) < 2:
+            raise SurfaceError(f"{line.name} comes to a single point when it is laid onto the part: make it longer")
+        for k, (start, end) in enumerate(pairwise(stops)):
+            if start != end:
+                path = [start, *_section(edit, start, end, line.normals[k] + line.normals[k + 1], line.name)]
+                edit.marked |= {ordered(a, b) for a, b in pairwise(path)}
+    return _parted(mesh, edit)
 
 
 def _section(edit: Editable, start: int, end: int, normal: Floats, name: str) -> list[int]:
@@ -84,25 +94,27 @@ def _next_vertex(edit: Editable, path: list[int], end: int, normal: Floats) -> i
     return edit.on_edge(*place) if place is not None else -1
 
 
-def _parted(mesh: Prepared, edit: Editable, path: list[int]) -> Prepared:
-    """The mesh with the faces on the two sides of a path of edges parted, each side with vertices of its own."""
+def _parted(mesh: Prepared, edit: Editable) -> tuple[Prepared, float]:
+    """The mesh with the faces on the two sides of marked edges parted, each side with vertices of its own."""
     n, m = edit.n, edit.m
     triangles, neighbours = edit.triangles[:m].copy(), edit.neighbours[:m].copy()
     slots = edit.neighbour_edge[:m].copy()
-    for a, b in pairwise(path):
+    length = 0.0
+    for a, b in edit.marked:
         for face, corner in edit.around(a):
             for edge in (corner, (corner + 2) % 3):
                 other = neighbours[face, edge]
                 if b in (triangles[face, edge], triangles[face, (edge + 1) % 3]) and other >= 0:
                     slot = slots[face, edge]
                     neighbours[face, edge] = slots[face, edge] = neighbours[other, slot] = slots[other, slot] = -1
+                    length += float(np.linalg.norm(edit.points[a] - edit.points[b]))
     copied = topology.split_fans(triangles, neighbours, slots, n)
     points = np.ascontiguousarray(np.concatenate([edit.points[:n], edit.points[copied]]))
     order, start = topology.sorted_edges(triangles, len(points))
     component, n_components = topology.label_components(order, start, m)
     height, edge_length = heights(points, triangles)
     parent = edit.parent[:m]
-    return replace(
+    cut = replace(
         mesh,
         points=points,
         triangles=triangles,
@@ -115,6 +127,7 @@ def _parted(mesh: Prepared, edit: Editable, path: list[int]) -> Prepared:
         doubled=mesh.doubled[parent],
         slender=height / edge_length,
     )
+    return cut, length
 
 
 def _written(point: Floats) -> str:

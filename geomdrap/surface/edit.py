@@ -9,11 +9,17 @@ from geomdrap.surface.types import Floats, Ints
 NEAR = 0.01  # of an edge or height: a new vertex so close to an old one is that one, and slivers are not made
 
 
+def ordered(a: int, b: int) -> tuple[int, int]:
+    """An edge between two vertices by its name in ``Editable.marked``."""
+    return (a, b) if a < b else (b, a)
+
+
 class Editable:
     """Points, triangles and neighbours of a mesh, in arrays with room for more.
 
     ``points`` (n, 3), ``triangles`` (m, 3), ``neighbours`` (m, 3) and ``neighbour_edge`` (m, 3) as in `Surface`, and
     ``parent`` (m,), the face that each one was a part of. What lies behind the first ``n`` and ``m`` is room.
+    ``marked`` are edges, pairs of vertices with the lower first; where one is split, both its pieces are.
     """
 
     def __init__(self, points: Floats, triangles: Ints, neighbours: Ints, neighbour_edge: Ints) -> None:
@@ -23,6 +29,7 @@ class Editable:
         self.parent = np.arange(self.m)
         self.face_at = np.zeros(self.n, np.int64)  # one face of each vertex
         self.face_at[self.triangles.ravel()] = np.repeat(np.arange(self.m), 3)
+        self.marked: set[tuple[int, int]] = set()
         self._pieces: dict[int, list[int]] = {}  # by the face that was split, those that came of it
 
     def _room(self) -> None:
@@ -68,6 +75,9 @@ class Editable:
         self._room()
         (a, b, c), (across, to_c, to_a) = self._turned(face, edge)
         p, g = self._vertex(point), self._face(face)
+        if ordered(a, b) in self.marked:
+            self.marked.remove(ordered(a, b))
+            self.marked |= {ordered(a, p), ordered(p, b)}
         if across[0] < 0:
             self._set(face, (a, p, c), ((-1, -1), (g, 2), to_a))
             self._set(g, (p, b, c), ((-1, -1), to_c, (face, 1)))

@@ -19,7 +19,7 @@ class Prepared:
 
     bad_edges (h,) half-edges 3 f + k at non-manifold edges, edge by edge; twisted (n_components,) not
     orientable; doubled (m,) faces that had a twin; slender (m,) heights as shares of the longest edges; cuts names
-    and lengths [mm] of the lines that it was cut along.
+    of the lines that it was cut along, cut_length mm of all.
     """
 
     points: Floats
@@ -37,7 +37,8 @@ class Prepared:
     bow_ties: Floats
     tolerance: float
     counts: dict[str, int]
-    cuts: tuple[tuple[str, float], ...] = ()
+    cuts: tuple[str, ...] = ()
+    cut_length: float = 0.0
 
 
 @dataclass
@@ -160,6 +161,7 @@ def take_component(whole: Prepared, label: int) -> Prepared:
         tolerance=whole.tolerance,
         counts=whole.counts,
         cuts=whole.cuts,
+        cut_length=whole.cut_length,
     )
 
 

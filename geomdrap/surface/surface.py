@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -10,7 +11,7 @@ import numpy as np
 
 from geomdrap.errors import SurfaceError
 from geomdrap.surface import defects, lids, topology, unfold
-from geomdrap.surface.cut import cut_along
+from geomdrap.surface.cut import Line, cut_along
 from geomdrap.surface.findings import Findings
 from geomdrap.surface.inspection import component_sums, inspect
 from geomdrap.surface.nearest import Nearest, NearestTree
@@ -239,30 +240,41 @@ class Surface:
         mesh = replace(self._mesh, points=np.array(points, dtype=np.float64, order="C"))
         return Surface._of(mesh, self.source, self.notes, self.findings)
 
-    def cut(self, points: Any, name: str = "the cut") -> Surface:
-        """The same part with a slit along a line through points (k, 3) mm, which a ply does not cross.
+    def cut(self, *lines: Any, names: Sequence[str] | None = None) -> Surface:
+        """The same part with a slit along each line through points (k, 3) mm, which a ply does not cross.
 
-        Between its points the line follows the section of the part along the normals there. ``name`` is how messages
-        call it. Raises SurfaceError for fewer than two points, points further from the part than a hundredth of its
-        diagonal, and a line that does not run over the part.
+        Between its points a line follows the section of the part along the normals there; lines may cross and touch.
+        ``names`` are how messages call them. Raises SurfaceError for fewer than two points, points further from the
+        part than a hundredth of its diagonal, lines that do not run over the part, and cuts that cut nothing.
         """
-        line = _line(points, name)
-        near = self.nearest(line)
-        far = int(near.distance.argmax())
-        if near.distance[far] > CUT_OFF * self.diagonal:
-            x, y, z = line[far]
-            raise SurfaceError(
-                f"{name} leaves {self.source}: ({x:.6g}, {y:.6g}, {z:.6g}) lies {near.distance[far]:.4g} mm off; "
-                "draw it on the part, and check its unit (mm)"
-            )
-        mesh, length = cut_along(self._mesh, near.point, near.face, self.normals[near.face], name)
-        mesh = replace(mesh, cuts=(*mesh.cuts, (name, length)))
+        called = list(names) if names is not None else [f"cut {n}" for n in range(1, len(lines) + 1)]
+        laid = [self._laid(_line(points, name), name) for points, name in zip(lines, called, strict=True)]
+        mesh, length = cut_along(self._mesh, laid)
+        if length == 0.0:
+            raise SurfaceError(f"{', '.join(called)}: the line runs along the rim and cuts nothing; draw it inwards")
+        mesh = replace(mesh, cuts=(*mesh.cuts, *called), cut_length=mesh.cut_length + length)
         return Surface._of(mesh, self.source, self.notes, self.findings)
 
+    def _laid(self, points: Floats, name: str) -> Line:
+        near = self.nearest(points)
+        far = int(near.distance.argmax())
+        if near.distance[far] > CUT_OFF * self.diagonal:
+            x, y, z = points[far]
+            raise SurfaceError(
+                f"{name} leaves {self.source}: ({x:.6g}, {y:.6g}, {z:.6g}) lies {near.distance[far]:.4g} mm off; "
+                "draw it on the part; its unit is mm, whatever --unit the part has"
+            )
+        return Line(near.point, near.face, self.normals[near.face], name)
+
     @property
-    def cuts(self) -> tuple[tuple[str, float], ...]:
-        """Names and lengths [mm] of the lines that the part was cut along."""
+    def cuts(self) -> tuple[str, ...]:
+        """Names of the lines that the part was cut along."""
         return self._mesh.cuts
+
+    @property
+    def cut_length(self) -> float:
+        """Length of all its cuts, mm."""
+        return self._mesh.cut_length
 
     def doubted(self, hint: str) -> Surface:
         """The same part with a hint on its unit among its findings."""
