@@ -65,7 +65,8 @@ def draw_piece(block: Any, piece: Piece, result: Drape) -> None:
         for polygon in polygons:
             block.add_polyline2d(rounded(polygon).tolist(), close=True, dxfattribs={"layer": layer})
             add_points(block, polygon)
-    for layer, lines in ((GRAIN, (piece.grain,)), (INTERNAL, (*piece.axes, *piece.seams))):
+    inside = ((GRAIN, (piece.grain,)), (INTERNAL, (*piece.axes, *piece.seams)), (CUTOUTS, piece.cuts))
+    for layer, lines in inside:
         for line in lines:
             start, end = rounded(line).tolist()
             block.add_line(start, end, dxfattribs={"layer": layer})

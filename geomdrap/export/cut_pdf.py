@@ -89,6 +89,8 @@ def draw_pieces(axes: Any, pieces: Sequence[Piece], shift: Floats, frame: Any) -
             tick = np.stack([notch.at, notch.at + DEPTH * notch.inward]) + shift
             draw(axes, tick, frame, color="black", lw=0.35 * POINT)
             write_in(axes, notch.at + 2.2 * DEPTH * notch.inward + shift, notch.mark.lower(), frame)
+        for line in piece.cuts:
+            draw(axes, line + shift, frame, color="black", lw=0.35 * POINT)
         for line in piece.axes:
             draw(axes, line + shift, frame, color=palette.FAINT, lw=0.15 * POINT, ls=(0, (8, 3, 1, 3)))
         for line in piece.seams:

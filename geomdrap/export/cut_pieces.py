@@ -50,8 +50,9 @@ class Piece:
 
     ``outer`` (k, 2) counter-clockwise, ``inner`` clockwise; ``grain`` (2, 2) along the warp; ``axes``: the stretches
     (2, 2) of the warp and weft through the origin that lie on the piece; ``seams`` the same of the middles of its
-    overlaps. ``seed`` (2,) is where the origin lies, NaN where on another piece: strips of a roll are moved apart.
-    ``strip_of``: name of the pattern that the piece is cut from in strips, else empty.
+    overlaps; ``cuts`` lines (2, 2) to cut within it. ``seed`` (2,) is where the origin lies, NaN where on another
+    piece: strips of a roll are moved apart. ``strip_of``: name of the pattern that the piece is cut from in strips,
+    else empty.
     """
 
     name: str
@@ -63,6 +64,7 @@ class Piece:
     seams: tuple[Floats, ...]
     seed: Floats
     strip_of: str = ""
+    cuts: tuple[Floats, ...] = ()
 
 
 def cut_pieces(result: Drape) -> tuple[Piece, ...]:
@@ -70,14 +72,14 @@ def cut_pieces(result: Drape) -> tuple[Piece, ...]:
     flat, stem = result.flat, piece_name(result.net.surface.source)
     roll = result.roll
     if roll is None or len(roll.strips) < 2:
-        return pieces_of((*flat.outer, *flat.inner), stem)
+        return tuple(with_cuts(piece, flat.cuts) for piece in pieces_of((*flat.outer, *flat.inner), stem))
     levels = np.array([seam.v for seam in roll.seams])
     pieces = []
     for number, strip in enumerate(roll.strips, start=1):
         inside = levels[(levels > strip.v[0]) & (levels < strip.v[1])]
         shift = np.array([0.0, (number - 1) * (roll.overlap + APART_STRIPS)])
         own = pieces_of(strip.contours, f"{stem}-STRIP{number}", inside, OFF_SEAM)
-        pieces += [replace(moved(piece, shift), strip_of=stem) for piece in own]
+        pieces += [replace(moved(with_cuts(piece, flat.cuts), shift), strip_of=stem) for piece in own]
     return tuple(pieces)
 
 
@@ -115,6 +117,11 @@ def pieces_of(
     return tuple(pieces)
 
 
+def with_cuts(piece: Piece, lines: Sequence[Floats]) -> Piece:
+    """The piece with those of the lines (2, 2) that lie on it."""
+    return replace(piece, cuts=tuple(line for line in lines if winding(piece.outer, line.mean(axis=0)) != 0))
+
+
 def moved(piece: Piece, shift: Floats) -> Piece:
     """The piece of a strip moved by (2,) mm; the seed goes with the strips whose piece it lies on."""
     on = winding(piece.outer, piece.seed) != 0
@@ -126,6 +133,7 @@ def moved(piece: Piece, shift: Floats) -> Piece:
         notches=tuple(replace(notch, at=notch.at + shift) for notch in piece.notches),
         axes=tuple(line + shift for line in piece.axes),
         seams=tuple(line + shift for line in piece.seams),
+        cuts=tuple(line + shift for line in piece.cuts),
         seed=piece.seed + shift if on else np.full(2, np.nan),
     )
 

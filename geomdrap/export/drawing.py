@@ -77,6 +77,7 @@ def flat_drawing(result: Drape) -> Drawing:
         Layer("WEFT_LINES", 0x4C9A6A, 3, open_lines(flat.weft_lines)),
         Layer("INNER_CONTOURS", 0x8A3FA0, 6, closed_lines(flat.inner)),
         Layer("OUTER_CONTOUR", 0x000000, 7, closed_lines(flat.outer)),
+        *([Layer("CUTS", 0xC8322B, 1, open_lines(flat.cuts))] if flat.cuts else []),
         *seam_layers(result),
         rosette(lower, upper),
         notes(result, lower, upper),

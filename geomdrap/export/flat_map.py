@@ -50,6 +50,7 @@ def draw_flat_map(axes: Any, result: Drape, every: int, arrow: float) -> None:
         if seams:
             axes.add_collection(LineCollection(seams, colors=palette.PAPER, linewidths=4.0, zorder=5))
             axes.add_collection(LineCollection(seams, colors=palette.SEAM, linewidths=2.2, zorder=6))
+        axes.add_collection(LineCollection(flat.cuts, colors=palette.INK, linewidths=1.2, zorder=4))
         axes.add_patch(
             PathPatch(outline, facecolor="none", edgecolor=palette.INK, lw=1.2, joinstyle="round", zorder=4)
         )

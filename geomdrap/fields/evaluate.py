@@ -9,6 +9,7 @@ import numpy as np
 
 from geomdrap.fields.checks import check_net
 from geomdrap.fields.contour import self_crossings
+from geomdrap.fields.cut_lines import torn
 from geomdrap.fields.flat import flat_pattern
 from geomdrap.fields.result import Areas, BareRegion, Checks, Drape, FlatPattern, ShearStatistics
 from geomdrap.fields.trim import Trimmed, trim
@@ -56,9 +57,20 @@ def evaluate(
         bare=bare_regions(trimmed),
         statistics=statistics(net, trimmed, shear, limit),
         checks=checks,
-        warnings=(*net.warnings, *doubts(flat, checks, areas(trimmed))),
+        warnings=(*net.warnings, *doubts(flat, checks, areas(trimmed)), *_tear(net, trimmed)),
         trimmed=trimmed,
         roll=None,
+    )
+
+
+def _tear(net: Net, trimmed: Trimmed) -> tuple[str, ...]:
+    """A warning where the fabric of the two sides of a cut does not join behind it."""
+    length, gap = torn(trimmed, net.pitch) if net.surface.cuts else (0.0, 0.0)
+    if gap == 0.0:
+        return ()
+    return (
+        f"behind a cut the fabric of its two sides does not join: the flat pattern is open there over {length:.4g} "
+        f"mm, by up to {gap:.3g} mm; lead the cut on to the rim, or to where the part is flat",
     )
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.fields.contour import clip_to_rectangle, outlines, signed_area, simplify
+from geomdrap.fields.cut_lines import shut_cuts
 from geomdrap.fields.result import FlatPattern
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def flat_pattern(net: Net, trimmed: Trimmed, limit_angle: float) -> FlatPattern:
         warp_lines=yarn_lines(contours, net.v, 1),
         weft_lines=yarn_lines(contours, net.u, 0),
         locked=locked_zones(net, limit_angle),
+        cuts=shut_cuts(trimmed, net.pitch) if net.surface.cuts else (),
     )
 
 

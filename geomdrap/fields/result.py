@@ -19,7 +19,8 @@ class FlatPattern:
 
     ``outer`` polygons (k, 2) are counter-clockwise, ``inner`` ones (openings) clockwise, the first point not
     repeated. ``warp_lines`` run at constant v and ``weft_lines`` at constant u on multiples of the pitch, out to the
-    contour. ``locked`` are polygons of cells beyond the limit angle.
+    contour. ``locked`` are polygons of cells beyond the limit angle. ``cuts`` are lines (2, 2) along which the fabric
+    is cut while both sides stay where they are; cuts that open are contours.
     """
 
     outer: tuple[np.ndarray, ...]
@@ -27,6 +28,7 @@ class FlatPattern:
     warp_lines: tuple[np.ndarray, ...]
     weft_lines: tuple[np.ndarray, ...]
     locked: tuple[np.ndarray, ...]
+    cuts: tuple[np.ndarray, ...] = ()
 
     @property
     def area(self) -> float:

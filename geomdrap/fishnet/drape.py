@@ -185,7 +185,7 @@ def _cut_off(surface: Surface, part: Surface) -> tuple[str, ...]:
         return ()
     return (
         f"{surface.source} lies in {surface.n_components} pieces with its cuts: the one with the origin is draped, "
-        f"{part.area:.6g} mm², and {surface.area - part.area:.6g} mm² are left out; drape these from an origin on them",
+        f"{part.area:.6g} mm², and {surface.area - part.area:.6g} mm² are left out: drape them from an origin there",
     )
 
 

@@ -2,8 +2,9 @@
 
 import json
 
+import numpy as np
 import pytest
-from made_parts import open_box
+from made_parts import open_box, sheet
 
 from geomdrap.surface import Surface
 
@@ -59,3 +60,24 @@ def test_a_line_that_is_none_says_so(run, box, tmp_path, text, words):
     assert words in result.stderr
     assert "line.csv" in result.stderr
     assert not (tmp_path / "drape").exists()
+
+
+def test_a_cut_that_stays_shut_is_drawn_in_every_file_that_is_cut_from(run, tmp_path):
+    import ezdxf
+    import trimesh
+
+    part = sheet(
+        np.stack([*np.meshgrid(np.linspace(0, 60, 7), np.linspace(0, 60, 7), indexing="ij"), np.zeros((7, 7))], 2)
+    )
+    trimesh.Trimesh(part.points, part.triangles, process=False).export(tmp_path / "plate.stl")
+    (tmp_path / "slit.csv").write_text("x,y,z\n15,22,0\n42,38,0\n")
+    options = ("--pitch", "5", "--origin", "30,50,0", "--outputs", "dxf,svg,cut", "--cut", "slit.csv", "-o", "out")
+    assert run("drape", "plate.stl", *options).exit_code == 0
+    flat = ezdxf.readfile(tmp_path / "out" / "flat.dxf")
+    lines = flat.modelspace().query('*[layer=="CUTS"]')
+    assert sum(
+        np.linalg.norm(np.diff([p[:2] for p in line.get_points()], axis=0)) for line in lines
+    ) == pytest.approx(np.hypot(27.0, 16.0), rel=1e-2)
+    assert 'id="cuts"' in (tmp_path / "out" / "flat.svg").read_text()
+    (block,) = (b for b in ezdxf.readfile(tmp_path / "out" / "cut.dxf").blocks if b.name == "PLATE")
+    assert len(block.query('LINE[layer=="11"]')) == len(lines)

@@ -1,0 +1,43 @@
+"""Cuts in the flat fabric: those that stay shut are lines of it, and where it tears behind one is said."""
+
+import numpy as np
+import pytest
+
+import geomdrap as gd
+from geomdrap.surface.shapes import sphere_cap
+
+
+def sheet(cells=12, side=120.0):
+    x = np.linspace(0.0, side, cells + 1)
+    points = np.stack([*np.meshgrid(x, x, indexing="ij"), np.zeros((cells + 1, cells + 1))], axis=-1).reshape(-1, 3)
+    n = np.arange((cells + 1) ** 2).reshape(cells + 1, -1)
+    a, b, c, d = (corner.ravel() for corner in (n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]))
+    return gd.Surface(points, np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])]))
+
+
+@pytest.mark.parametrize("line", [[[30, 42, 0], [80, 47, 0]], [[0, 33, 0], [71, 52, 0]]], ids=["within", "from the rim"])
+def test_a_cut_in_a_plane_sheet_lies_in_the_pattern_where_it_was_drawn(line):
+    drape = gd.evaluate(gd.drape(sheet().cut(line), (60.0, 90.0, 0.0), 20.0, 5.0))
+    line = np.array(line, float)
+    drawn = np.array(drape.flat.cuts)
+    assert np.linalg.norm(drawn[:, 1] - drawn[:, 0], axis=1).sum() == pytest.approx(
+        np.linalg.norm(line[1] - line[0]), rel=2e-3
+    )
+    turn = np.radians(20.0)
+    warp, weft = np.array([np.cos(turn), np.sin(turn)]), np.array([-np.sin(turn), np.cos(turn)])
+    there = (line[:, :2] - [60.0, 90.0]) @ np.column_stack([warp, weft])
+    along = (there[1] - there[0]) / np.linalg.norm(there[1] - there[0])
+    off = (drawn.reshape(-1, 2) - there[0]) @ [-along[1], along[0]]
+    assert np.abs(off).max() < 0.15  # the line may bend to vertices nearby, a hundredth of an edge
+    assert not drape.warnings
+    assert drape.area.fabric == pytest.approx(120.0**2, rel=1e-9)
+
+
+def test_a_tear_behind_a_cut_is_warned_of_and_a_part_without_cuts_has_no_cut_lines():
+    dome = sphere_cap(radius=100.0, opening=60.0, edge=4.0)
+    whole = gd.evaluate(gd.drape(dome, (0.0, 0.0, 100.0), 0.0, 5.0))
+    assert not whole.flat.cuts
+    assert not any("behind a cut" in w for w in whole.warnings)
+    line = [dome.nearest([[x, x, 100.0]]).point[0] for x in (20.0, 35.0, 45.0)]
+    cut = gd.evaluate(gd.drape(dome.cut(line), (0.0, 0.0, 100.0), 0.0, 5.0))
+    assert any("behind a cut the fabric of its two sides does not join" in w for w in cut.warnings)
