@@ -154,7 +154,7 @@ def made_up_pattern(width, height, edge, u, v):
     locked = (np.array([[0.2, 0.1], [0.3, 0.1], [0.3, 0.2], [0.2, 0.2]]) * [a, b],)
     area = polygon_area(outer) + polygon_area(hole)
     return SimpleNamespace(
-        outer=(outer,), inner=(hole,), warp_lines=warp, weft_lines=weft, locked=locked, area=area
+        outer=(outer,), inner=(hole,), warp_lines=warp, weft_lines=weft, locked=locked, area=area, cuts=()
     )
 
 
