@@ -128,6 +128,8 @@ def drape(
         extras = Extras(context.meta.get(COMMAND, ""), None, ply_thickness or THICKNESS, paper)
         laid = {name: value for name, value in asked.items() if name not in GUIDES}
         return drape_plies(plies, extras, folder, outputs, strict, as_json, quiet, **laid)
+    meant = _layup_of_model(asked["model"], context)
+    asked.update(meant)
     mesh, outputs = fe_mesh_of(onto, outputs)
     with Progress(quiet) as progress:
         result = compute(progress, lambda: announce_compilation(quiet), **asked)
@@ -137,13 +139,27 @@ def drape(
         files = write_all(result, folder, outputs, progress.share, Extras(command, elements, ply_thickness, paper))
     left = of_an_earlier_run(left_over(folder, files.values()) if files else [], folder)
     more = (*notes_on(elements, outputs), *left)
-    say((*result.warnings, *more), result.net.notes, quiet)
+    taken = [f"{' and '.join(meant)} of the ply are those of {asked['model'].name}"] if meant else []
+    say((*result.warnings, *more), (*taken, *result.net.notes), quiet)
     if as_json:
         document = as_dict(result, files)
         print_json({**document, "warnings": [*document["warnings"], *more]})
     elif not quiet:
         click.echo(summary(result, files))
     return int(strict and is_incomplete(result))
+
+
+def _layup_of_model(model: Path | None, context: click.Context) -> dict[str, Any]:
+    """Origin, heading and reference of a model's ply, where the command line does not give them.
+
+    A placement was fitted to these: with others the ply would be displaced from another place.
+    """
+    if model is None:
+        return {}
+    from geomdrap.effects import read_layup
+
+    given = ParameterSource.COMMANDLINE
+    return {k: v for k, v in read_layup(model).items() if context.get_parameter_source(k) != given}
 
 
 def _refuse_guides(asked: Mapping[str, Any], other: str) -> None:

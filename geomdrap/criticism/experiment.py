@@ -39,6 +39,17 @@ class Layup:
     pitch: float | None = None
     project: bool = True
 
+    def as_meant(self) -> dict[str, str | float | tuple[float, ...]]:
+        """Origin, heading and reference as a model file holds them."""
+        origin = self.origin
+        if isinstance(origin, (int, np.integer)):
+            origin = f"vertex:{origin}"
+        out: dict[str, str | float | tuple[float, ...]] = {
+            "origin": origin if isinstance(origin, str) else tuple(float(x) for x in origin),
+            "angle": float(self.angle),
+        }
+        return out if self.reference is None else {**out, "reference": tuple(float(x) for x in self.reference)}
+
 
 @dataclass(frozen=True, eq=False)
 class Experiment:

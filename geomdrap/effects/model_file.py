@@ -14,19 +14,37 @@ from geomdrap.fishnet import Effect
 FORMAT = "geomdrap.model/1"
 
 
-def write_model(path: str | Path, effects: Sequence[Effect], notes: Sequence[str] = ()) -> None:
+def write_model(
+    path: str | Path,
+    effects: Sequence[Effect],
+    notes: Sequence[str] = (),
+    layup: Mapping[str, str | float | Sequence[float]] | None = None,
+) -> None:
     """Write effects (the placement among them) to a model file; ``notes`` become comments at its head.
+
+    ``layup`` says how the ply was meant to lie that the effects were fitted to: origin, angle, reference.
 
     Raises EffectError for an effect without a name: it could not be found again.
     """
     lines = [f"# {line}" for note in notes for line in note.splitlines()]
     lines += [f'format = "{FORMAT}"']
+    if layup:
+        lines += ["", "[layup]", *(f"{key} = {_toml(value)}" for key, value in layup.items())]
     for effect in effects:
         if not effect.name:
             raise EffectError(f"effect {effect.title()} has no name, so no model file can hold it; give it one")
         lines += ["", "[[effect]]", f'name = "{effect.name}"']
         lines += [f"{p.name} = {effect.values[p.name]!r}{_unit(p.unit)}" for p in effect.parameters]
     Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _toml(value: str | float | Sequence[float]) -> str:
+    """A text, a number or numbers as TOML has them."""
+    if isinstance(value, str):
+        return f'"{value}"'
+    if isinstance(value, Sequence):
+        return f"[{', '.join(repr(float(x)) for x in value)}]"
+    return repr(float(value))
 
 
 def _unit(unit: str) -> str:
@@ -39,6 +57,40 @@ def read_model(path: str | Path) -> tuple[Effect, ...]:
     Raises EffectError where it is no model file of a known format, names unknown effects or values, or an effect
     without the values that it needs to act.
     """
+    document = _document(path)
+    entries = document.get("effect", [])
+    if not (isinstance(entries, list) and all(isinstance(entry, dict) for entry in entries)):
+        raise EffectError(f"model {path}: write each effect as a table [[effect]]")
+    return tuple(_effect_of(entry, path) for entry in entries)
+
+
+def read_layup(path: str | Path) -> dict[str, Any]:
+    """How the ply was meant to lie that a model file was fitted to: ``origin``, ``angle``, ``reference``, if it says.
+
+    Raises EffectError where it is no model file, or holds something else there.
+    """
+    found = _document(path).get("layup", {})
+    if not isinstance(found, dict):
+        raise EffectError(f"model {path}: write the lay-up as a table [layup]")
+    out: dict[str, Any] = {}
+    for key, value in found.items():
+        if key == "angle" and isinstance(value, (int, float)):
+            out[key] = float(value)
+        elif key in ("origin", "reference") and _is_point(value):
+            out[key] = tuple(float(x) for x in value)
+        elif key == "origin" and isinstance(value, str):
+            out[key] = value
+        else:
+            raise EffectError(f"model {path}: [layup] holds origin, angle and reference, not {key} = {value!r}")
+    return out
+
+
+def _is_point(value: Any) -> bool:
+    return isinstance(value, list) and len(value) == 3 and all(isinstance(x, (int, float)) for x in value)
+
+
+def _document(path: str | Path) -> dict[str, Any]:
+    """What a model file holds, of a known format."""
     try:
         document = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
@@ -47,12 +99,9 @@ def read_model(path: str | Path) -> tuple[Effect, ...]:
         raise EffectError(f"model {path} is no TOML file: {error}") from error
     if document.get("format") != FORMAT:
         raise EffectError(f"model {path} has format {document.get('format')!r}; this version reads {FORMAT!r}")
-    for key in set(document) - {"format", "effect"}:
-        raise EffectError(f"model {path}: {key!r} is not known; a model has a format and [[effect]] tables")
-    entries = document.get("effect", [])
-    if not (isinstance(entries, list) and all(isinstance(entry, dict) for entry in entries)):
-        raise EffectError(f"model {path}: write each effect as a table [[effect]]")
-    return tuple(_effect_of(entry, path) for entry in entries)
+    for key in set(document) - {"format", "layup", "effect"}:
+        raise EffectError(f"model {path}: {key!r} is not known; a model has a format, [layup] and [[effect]] tables")
+    return document
 
 
 def _effect_of(entry: Mapping[str, Any], path: str | Path) -> Effect:

@@ -32,7 +32,8 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     return said
 
 
-def test_options_arrive_as_values(run: Run, asked: dict[str, Any]) -> None:
+def test_options_arrive_as_values(run: Run, asked: dict[str, Any], tmp_path: Path) -> None:
+    (tmp_path / "m.toml").write_text('format = "geomdrap.model/1"\n')
     result = run(
         *(
             "drape",

@@ -121,3 +121,20 @@ def test_the_sample_plugin_shrinks_the_net(part):
     ends = [net.interpolate([50.0], [0.0])[0][0] - net.origin for net in (plain, shrunk)]
     assert (ends[1] ** 2).sum() < (ends[0] ** 2).sum()
     assert shrunk.sides[0].max() == pytest.approx(9.8)
+
+
+def test_a_model_drapes_the_ply_that_it_was_fitted_to_unless_told_otherwise(run, tmp_path):
+    run("sample", "saddle")
+    (tmp_path / "model.toml").write_text(
+        'format = "geomdrap.model/1"\n[layup]\norigin = [10.0, -5.0, 0.0]\nangle = 20.0\n'
+        '[[effect]]\nname = "yarn-extension"\nstrain_warp = 0.01\nstrain_weft = 0.0\n'
+    )
+    options = ("--pitch", "15", "--outputs", "json", "--json", "--project", "--model", "model.toml")
+    own = run("drape", "saddle.stl", *options)
+    drape = json.loads(own.stdout)
+    assert drape["angle"] == 20.0
+    assert drape["origin"][:2] == pytest.approx([10.0, -5.0], abs=0.5)
+    assert "origin and angle of the ply are those of model.toml" in own.stderr
+    told = json.loads(run("drape", "saddle.stl", "--angle", "45", *options).stdout)
+    assert told["angle"] == 45.0
+    assert told["origin"] == drape["origin"]

@@ -246,3 +246,18 @@ def test_a_model_file_that_is_none_is_refused_with_its_name(tmp_path, text, word
     assert "model.toml" in str(error.value)
     with pytest.raises(gd.EffectError, match="cannot be read"):
         gd.effects.read_model(tmp_path / "missing.toml")
+
+
+def test_a_model_file_says_how_the_ply_was_meant_to_lie(tmp_path):
+    file = tmp_path / "model.toml"
+    meant = {"origin": (3.0, 2.0, 84.8472), "angle": 20.0, "reference": (0.0, 1.0, 0.0)}
+    gd.effects.write_model(file, [gd.effects.make("slip", coefficient=0.3)], layup=meant)
+    assert gd.effects.read_layup(file) == meant
+    assert gd.effects.read_model(file)[0].values == {"coefficient": 0.3}
+    gd.effects.write_model(file, [], layup={"origin": "vertex:7", "angle": -5.0})
+    assert gd.effects.read_layup(file) == {"origin": "vertex:7", "angle": -5.0}
+    gd.effects.write_model(file, [])
+    assert gd.effects.read_layup(file) == {}
+    file.write_text('format = "geomdrap.model/1"\n[layup]\nangle = "steep"\n')
+    with pytest.raises(gd.EffectError, match="not angle = 'steep'"):
+        gd.effects.read_layup(file)

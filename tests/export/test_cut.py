@@ -31,7 +31,7 @@ def result():
 
 
 def pattern(outer=(SQUARE,), inner=(HOLE,)):
-    flat = SimpleNamespace(outer=tuple(outer), inner=tuple(inner))
+    flat = SimpleNamespace(outer=tuple(outer), inner=tuple(inner), cuts=())
     return SimpleNamespace(flat=flat, roll=None, net=SimpleNamespace(surface=SimpleNamespace(source="bügel 2.stl")))
 
 
