@@ -20,7 +20,7 @@ NONE, PLACEMENT, AMBIGUOUS, UNKNOWN = "none", "placement", "ambiguous", "unknown
 
 @dataclass(frozen=True)
 class Value:
-    """A fitted parameter: ``value`` and standard deviation ``sigma``, in ``unit``."""
+    """A fitted parameter: ``value`` and standard deviation ``sigma``, in ``unit``; infinite where it is not seen."""
 
     name: str
     value: float
@@ -39,8 +39,8 @@ class Tried:
 
     ``rms_position`` mm and ``rms_shear`` degrees, None where not measured; ``cv_error``: held out, over the noise.
     ``confounded_with`` lists effects whose signature on these points is nearly the same; ``visible`` holds for each
-    parameter the smallest value that these data would show, None where none would. ``looked_at_only``: one look
-    promised too little for a fit, and the values are those at which it does nothing.
+    parameter how far from its neutral value these data would show it, None where they would not. ``looked_at_only``:
+    one look promised too little for a fit, and the values are those at which it does nothing, with an infinite sigma.
     """
 
     name: str
