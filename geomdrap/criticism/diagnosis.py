@@ -96,6 +96,11 @@ class Diagnosis:
     hints: tuple[str, ...]
     notes: tuple[str, ...]
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What speaks against the measured table as a whole: labels that look swapped, a unit that is doubtful."""
+        return self.experiment.warnings
+
     def as_dict(self) -> dict[str, object]:
         """The diagnosis as JSON has it (schema geomdrap.diagnose/1)."""
         return {
@@ -118,6 +123,7 @@ class Diagnosis:
                 "structured": self.leftover.structured,
             },
             "hints": list(self.hints),
+            "warnings": list(self.warnings),
             "notes": list(self.notes),
         }
 

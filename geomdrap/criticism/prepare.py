@@ -38,12 +38,14 @@ def prepare(
 ) -> tuple[Experiment, tuple[str, ...]]:
     """The experiment, without the points that stand out from their neighbours, and notes on what was chosen.
 
+    What speaks against the table as a whole, as labels that look swapped, is among the experiment's ``warnings``.
+
     ``sigma_xyz`` mm, ``sigma_shear`` and ``sigma_direction`` degrees apply where the table has no noise of its own.
     With neither, noise is read from replicates, else from how neighbouring residuals differ, and a note says so; that
     of directions, where these do not say it, from that of the shear. Raises MeasurementError where nothing can be
     compared, or points at fewer than ``FEWEST_PLACES`` places.
     """
-    require_on_part(surface, measurement)
+    warnings = [*measurement.warnings, *require_on_part(surface, measurement)]
     notes = [*note_on(surface)]
     measurement = thinned(measurement, notes)
     lay = replace(layup, pitch=None)
@@ -68,7 +70,7 @@ def prepare(
             f"{measurement.source}: the model predicts none of the {len(measurement)} points "
             f"({found.reason[0]}); check the origin, the heading and the units of the table"
         )
-    notes += check_labels(net, measurement)
+    warnings += check_labels(net, measurement)
     at = np.column_stack([found.u, found.v])
     frames = np.stack([found.warp, np.cross(found.normal, found.warp), found.normal], axis=1)
     channels, values = measured_table(measurement, found, frames)
@@ -85,8 +87,9 @@ def prepare(
     _require_places(measurement, at, mask)
     # the seed was near enough to the part; on the surfaces that effects make of it, it may lie further off
     lay = replace(lay, project=True)
+    noise, values = flatten(sigma, mask), flatten(values, mask)
     experiment = Experiment(
-        surface, measurement, lay, at, frames, channels, mask, flatten(sigma, mask), flatten(values, mask), pitches
+        surface, measurement, lay, at, frames, channels, mask, noise, values, pitches, tuple(warnings)
     )
     return experiment, (*notes, *more)
 

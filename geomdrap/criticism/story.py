@@ -90,7 +90,7 @@ def _sizes(t: Tried) -> list[str]:
         if p.neutral == p.high:  # as an angle of locking: the lower the stronger
             out.append(f"below {p.name} {p.neutral - amounts[p.name]:.3g}{_unit(p.unit)}")
         else:
-            out.append(f"above {p.name} {amounts[p.name]:.2g}{_unit(p.unit)}")
+            out.append(f"{'' if out else 'above '}{p.name} {amounts[p.name]:.2g}{_unit(p.unit)}")
     return out
 
 

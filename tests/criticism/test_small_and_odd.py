@@ -90,3 +90,13 @@ def test_fewer_than_six_places_are_too_few_for_a_diagnosis_and_their_number_is_s
     places = 1 if same else n
     with pytest.raises(gd.MeasurementError, match=rf"few.csv: points at {places} places? can .* at 6 places or more"):
         prepare(net.surface, m, layup, **noise)
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_swapped_labels_are_a_warning_of_a_diagnosis_and_no_note(net, swapped):
+    u, v = np.random.default_rng(2).uniform(-30.0, 30.0, (2, 40))
+    points, _ = net.interpolate(u, v)
+    m = gd.Measurement("marks.csv", points, u=v if swapped else u, v=u if swapped else v)
+    experiment, notes = prepare(net.surface, m, Layup("centroid", 20.0), sigma_xyz=0.5)
+    assert ["u and v are swapped" in warning for warning in experiment.warnings] == [True] * swapped
+    assert not any("swapped" in note for note in notes)
