@@ -83,14 +83,15 @@ def _sizes(t: Tried) -> list[str]:
     What does nothing alone, as a threshold, is left out: it is not seen for what it is, whatever the data.
     """
     amounts = {name: amount for name, amount, _ in t.visible if amount is not None}
-    out = []
+    out, last = [], ""
     for p in make(t.name).parameters:
         if p.name not in amounts or make(t.name, **{p.name: p.typical}).is_neutral:
             continue
+        amount, side = f"{amounts[p.name]:.2g}", "above "
         if p.neutral == p.high:  # as an angle of locking: the lower the stronger
-            out.append(f"below {p.name} {p.neutral - amounts[p.name]:.3g}{_unit(p.unit)}")
-        else:
-            out.append(f"{'' if out else 'above '}{p.name} {amounts[p.name]:.2g}{_unit(p.unit)}")
+            amount, side = f"{p.neutral - amounts[p.name]:.3g}", "below "
+        out.append(f"{'' if side == last else side}{p.name} {amount}{_unit(p.unit)}")
+        last = side
     return out
 
 

@@ -30,11 +30,11 @@ def diagnosis(verdict, *rows):
 
 
 def test_thresholds_are_left_out_and_what_acts_downwards_is_seen_below_a_value():
-    d = diagnosis("none", tried("locking", 2.4), tried("crossing-slip", 0.016, 1.3), tried("thickness", 0.05))
+    d = diagnosis("none", tried("locking", 2.4), tried("crossing-slip", 0.016, 1.3), tried("steering", 0.05, 0.06))
     text = unseen_sentences(d)[0].replace("\u00a0", " ")
     assert text == (
         "Would have been seen: locking below angle 87.6 deg; crossing-slip above share 0.016; "
-        "thickness above offset 0.05 mm."
+        "steering above curvature_warp 0.05 1/m, curvature_weft 0.06 1/m."
     )
     # a threshold alone shows nothing
     assert unseen_sentences(diagnosis("none", tried("crossing-slip", None, 1.3))) == [
