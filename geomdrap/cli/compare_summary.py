@@ -53,7 +53,7 @@ def _structure(comparison: Comparison) -> Iterator[tuple[str, str]]:
     """Whether the residuals are alike at neighbours: what is not noise."""
     kinds = (("position", comparison.structure.position), ("shear", comparison.structure.shear))
     known = [(kind, found) for kind, found in kinds if found is not None]
-    alike = [f"{kind} (Moran's I {found.moran:.2f})" for kind, found in known if found.p < 0.001]
+    alike = [f"{kind} (Moran's I {found.moran:.2f})" for kind, found in known if found.alike]
     if alike:
         yield "structure", f"neighbours are alike, which noise is not: {', '.join(alike)}"
 

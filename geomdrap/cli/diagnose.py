@@ -82,7 +82,7 @@ def diagnose(
         result = gd.diagnose(ready.surface, ready.measurement, **ready.laid, progress=lambda s, _: progress.share(s))
         progress.step("Writing")
         files = write_diagnosis(result, folder, outputs)
-    say((), (*ready.notes, *result.notes), quiet)
+    say(result.warnings, (*ready.notes, *result.notes), quiet)
     if as_json:
         print_json(as_dict(result, files))
     elif not quiet:

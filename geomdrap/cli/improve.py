@@ -66,7 +66,7 @@ def improve(
         result = gd.improve(ready.surface, ready.measurement, **ready.laid, progress=lambda s, _: progress.share(s))
         progress.step("Writing")
         files = write_improvement(result, model)
-    say((), (*ready.notes, *result.diagnosis.notes), quiet)
+    say(result.diagnosis.warnings, (*ready.notes, *result.diagnosis.notes), quiet)
     if as_json:
         print_json(result.as_dict(str(model)))
     elif not quiet:

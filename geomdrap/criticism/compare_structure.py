@@ -12,6 +12,7 @@ from geomdrap.measurement.local import neighbours
 if TYPE_CHECKING:
     from geomdrap.criticism.comparison import Comparison
 
+BEYOND_CHANCE = 0.001
 NEAR = 8
 CLASSES = 16
 MOST = 1200
@@ -27,6 +28,11 @@ class Likeness:
     moran: float
     z: float
     p: float
+
+    @property
+    def alike(self) -> bool:
+        """Whether neighbours are alike beyond chance, which noise is not."""
+        return self.p < BEYOND_CHANCE
 
 
 @dataclass(frozen=True)

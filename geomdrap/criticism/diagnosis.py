@@ -20,7 +20,7 @@ NONE, PLACEMENT, AMBIGUOUS, UNKNOWN = "none", "placement", "ambiguous", "unknown
 
 @dataclass(frozen=True)
 class Value:
-    """A fitted parameter: ``value`` and standard deviation ``sigma``, in ``unit``."""
+    """A fitted parameter: ``value`` and standard deviation ``sigma``, in ``unit``; infinite where it is not seen."""
 
     name: str
     value: float
@@ -39,8 +39,8 @@ class Tried:
 
     ``rms_position`` mm and ``rms_shear`` degrees, None where not measured; ``cv_error``: held out, over the noise.
     ``confounded_with`` lists effects whose signature on these points is nearly the same; ``visible`` holds for each
-    parameter the smallest value that these data would show, None where none would. ``looked_at_only``: one look
-    promised too little for a fit, and the values are those at which it does nothing.
+    parameter how far from its neutral value these data would show it, None where they would not. ``looked_at_only``:
+    one look promised too little for a fit, and the values are those at which it does nothing, with an infinite sigma.
     """
 
     name: str
@@ -96,6 +96,11 @@ class Diagnosis:
     hints: tuple[str, ...]
     notes: tuple[str, ...]
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What speaks against the measured table as a whole: labels that look swapped, a unit that is doubtful."""
+        return self.experiment.warnings
+
     def as_dict(self) -> dict[str, object]:
         """The diagnosis as JSON has it (schema geomdrap.diagnose/1)."""
         return {
@@ -118,6 +123,7 @@ class Diagnosis:
                 "structured": self.leftover.structured,
             },
             "hints": list(self.hints),
+            "warnings": list(self.warnings),
             "notes": list(self.notes),
         }
 

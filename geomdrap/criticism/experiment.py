@@ -58,8 +58,9 @@ class Experiment:
     ``at`` (n, 2) mm fabric coordinates of the points; ``channels`` (c,) names of ``CHANNELS``; ``mask`` (n, c) which
     were measured; ``noise`` (m,) their standard deviations, mm or degrees; ``measured`` (m,); vectors hold the true
     entries of ``mask``, channel by channel. ``refused``: why a drape with an effect could not be made at some of the
-    values tried, by its name. ``frames`` (n, 3, 3): along the warp, across it, and the normal. What is costly is
-    kept: ``surfaces`` with effects on them, the ``coarseness`` of nets, and the last ``costly`` nets.
+    values tried, by its name; ``warnings`` of the table. ``frames`` (n, 3, 3): along the warp, across it, and the
+    normal. What is costly is kept: ``surfaces`` with effects on them, the ``coarseness`` of nets, and the last
+    ``costly`` nets.
     """
 
     surface: Surface
@@ -72,6 +73,7 @@ class Experiment:
     noise: np.ndarray
     measured: np.ndarray
     pitches: tuple[float, float]
+    warnings: tuple[str, ...] = ()
     surfaces: dict[str, Surface] = field(default_factory=dict)
     refused: dict[str, str] = field(default_factory=dict)
     coarseness: dict[str, np.ndarray] = field(default_factory=dict)

@@ -67,6 +67,7 @@ class Improvement:
             "parameters": {e.name: {k: rounded(v) for k, v in e.values.items()} for e in d.effects},
             "model": model,
             "hints": list(d.hints),
+            "warnings": list(d.warnings),
             "notes": [*self.notes, *d.notes],
         }
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from geomdrap.measurement import Measurement
     from geomdrap.surface import Surface
 
+FEWEST_PLACES = 6  # three values of the placement, up to two of an effect, and something to hold them against
 MOST_POINTS = 400  # with a dense covariance; more points are thinned out evenly
 POSITION = ("along", "across", "normal")
 OPTIONS = {"position": "--sigma-xyz", "shear": "--sigma-shear", "direction": "--sigma-direction"}
@@ -37,12 +38,14 @@ def prepare(
 ) -> tuple[Experiment, tuple[str, ...]]:
     """The experiment, without the points that stand out from their neighbours, and notes on what was chosen.
 
+    What speaks against the table as a whole, as labels that look swapped, is among the experiment's ``warnings``.
+
     ``sigma_xyz`` mm, ``sigma_shear`` and ``sigma_direction`` degrees apply where the table has no noise of its own.
     With neither, noise is read from replicates, else from how neighbouring residuals differ, and a note says so; that
     of directions, where these do not say it, from that of the shear. Raises MeasurementError where nothing can be
-    compared.
+    compared, or points at fewer than ``FEWEST_PLACES`` places.
     """
-    require_on_part(surface, measurement)
+    warnings = [*measurement.warnings, *require_on_part(surface, measurement)]
     notes = [*note_on(surface)]
     measurement = thinned(measurement, notes)
     lay = replace(layup, pitch=None)
@@ -67,12 +70,13 @@ def prepare(
             f"{measurement.source}: the model predicts none of the {len(measurement)} points "
             f"({found.reason[0]}); check the origin, the heading and the units of the table"
         )
-    notes += check_labels(net, measurement)
+    warnings += check_labels(net, measurement)
     at = np.column_stack([found.u, found.v])
     frames = np.stack([found.warp, np.cross(found.normal, found.warp), found.normal], axis=1)
     channels, values = measured_table(measurement, found, frames)
     table = predicted(net, measurement, frames, channels)
     mask = np.isfinite(values) & np.isfinite(table) & np.isfinite(at).all(axis=1)[:, None]
+    _require_places(measurement, at, mask)
     given = (sigma_xyz, sigma_shear, sigma_direction)
     sigma, more = _noise(measurement, channels, values, values - table, at, given)
     for outlier in find_outliers(net, measurement, found, *_by_kind(channels, sigma)):
@@ -80,12 +84,25 @@ def prepare(
         mask[outlier.row] &= ~np.array(kind) if outlier.kind == "position" else np.array(kind)
     if not mask.any():
         raise MeasurementError(f"{measurement.source}: every point stands out from its neighbours; check the table")
+    _require_places(measurement, at, mask)
     # the seed was near enough to the part; on the surfaces that effects make of it, it may lie further off
     lay = replace(lay, project=True)
+    noise, values = flatten(sigma, mask), flatten(values, mask)
     experiment = Experiment(
-        surface, measurement, lay, at, frames, channels, mask, flatten(sigma, mask), flatten(values, mask), pitches
+        surface, measurement, lay, at, frames, channels, mask, noise, values, pitches, tuple(warnings)
     )
     return experiment, (*notes, *more)
+
+
+def _require_places(measurement: Measurement, at: np.ndarray, mask: np.ndarray) -> None:
+    """Raise MeasurementError where the points used lie at too few places ``at`` (n, 2) mm; ``mask`` (n, c)."""
+    places = len(np.unique(np.round(at[mask.any(axis=1)], 6), axis=0))
+    if places < FEWEST_PLACES:
+        raise MeasurementError(
+            f"{measurement.source}: points at {places} place{'' if places == 1 else 's'} can be used, too few to say "
+            f"which effect is missing (3 values of the placement and up to 2 of an effect are fitted): measure at "
+            f"{FEWEST_PLACES} places or more"
+        )
 
 
 def thinned(measurement: Measurement, notes: list[str]) -> Measurement:

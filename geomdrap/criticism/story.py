@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Tried, Value
+from geomdrap.effects import make
 
 
 def verdict_sentence(d: Diagnosis) -> str:
@@ -13,9 +16,11 @@ def verdict_sentence(d: Diagnosis) -> str:
             if d.scatter.size > 0.0
             else ""
         )
-        return f"Nothing is missing: the model agrees with the measurement down to its noise{scatter}."
+        hidden = 2 * sum(not _sizes(t) for t in d.tried) > len(d.tried)
+        nothing = "Nothing that can be seen in these data is missing" if hidden else "Nothing is missing"
+        return f"{nothing}: the model agrees with the measurement down to its noise{scatter}."
     if d.verdict == PLACEMENT:
-        return f"The model is right, but the ply was laid elsewhere: {_list(d.placement)}."
+        return f"The model is right, but the ply was laid elsewhere: {_list(d.placement)} (95 %)."
     if d.verdict == AMBIGUOUS:
         return f"These effects explain the measurement equally well: {_and(d.candidates)}."
     if d.verdict == UNKNOWN:
@@ -26,7 +31,7 @@ def verdict_sentence(d: Diagnosis) -> str:
         )
         return f"Something is missing that no effect of the library explains.{found}"
     chosen = [t for t in d.tried if t.selected]
-    values = "; ".join(f"{t.name} ({_list(t.values)})" for t in chosen)
+    values = "; ".join(f"{t.name} ({_list(t.values)}; 95 %)" for t in chosen)
     return f"The model lacks {values}."
 
 
@@ -59,9 +64,9 @@ def unseen_sentences(d: Diagnosis) -> list[str]:
     for t in d.tried:
         if t.selected or t.name in d.candidates:
             continue
-        sizes = [f"{name} {amount:.2g}{_unit(unit)}" for name, amount, unit in t.visible if amount is not None]
+        sizes = _sizes(t)
         if sizes:
-            seen.append(f"{t.name} above {', '.join(sizes)}")
+            seen.append(f"{t.name} {', '.join(sizes)}")
         else:
             blind.append(t.name)
     out = []
@@ -72,16 +77,41 @@ def unseen_sentences(d: Diagnosis) -> list[str]:
     return out
 
 
+def _sizes(t: Tried) -> list[str]:
+    """From which sizes on each parameter of an effect would have been seen; empty where none would.
+
+    What does nothing alone, as a threshold, is left out: it is not seen for what it is, whatever the data.
+    """
+    amounts = {name: amount for name, amount, _ in t.visible if amount is not None}
+    out, last = [], ""
+    for p in make(t.name).parameters:
+        if p.name not in amounts or make(t.name, **{p.name: p.typical}).is_neutral:
+            continue
+        amount, side = f"{amounts[p.name]:.2g}", "above "
+        if p.neutral == p.high:  # as an angle of locking: the lower the stronger
+            amount, side = f"{p.neutral - amounts[p.name]:.3g}", "below "
+        out.append(f"{'' if side == last else side}{p.name} {amount}{_unit(p.unit)}")
+        last = side
+    return out
+
+
+def fitted_words(t: Tried) -> str:
+    """The values found for an effect with their 95 % intervals, or that there are none and why."""
+    if t.looked_at_only:
+        return "looked at only"
+    return "not seen" if not any(math.isfinite(v.sigma) for v in t.values) else _list(t.values)
+
+
 def table_rows(d: Diagnosis) -> list[tuple[str, ...]]:
     """Header and a row per effect: name, values, share of the misfit, held-out error, chance, looks like."""
-    rows = [("effect", "fitted", "explains", "held out", "by chance", "looks like")]
+    rows = [("effect", "fitted (± 95 %)", "explains", "held out", "by chance", "looks like")]
     return rows + [_row(t) for t in d.tried]
 
 
 def _row(t: Tried) -> tuple[str, ...]:
     return (
         ("* " if t.selected else "  ") + t.name,
-        "looked at only" if t.looked_at_only else _list(t.values),
+        fitted_words(t),
         f"{100 * max(t.evidence.share, 0.0):.0f} %",
         f"{t.cv_error:.2f}",
         f"{t.evidence.p_family:.1g}",
@@ -90,8 +120,14 @@ def _row(t: Tried) -> tuple[str, ...]:
 
 
 def _list(values: tuple[Value, ...]) -> str:
+    return ", ".join(_value(v) for v in values)
+
+
+def _value(v: Value) -> str:
     # no-break spaces: a value stays on one line with its interval
-    return ", ".join(f"{v.name}\u00a0{v.value:.3g}\u00a0±\u00a0{1.96 * v.sigma:.1g}{_unit(v.unit)}" for v in values)
+    if not math.isfinite(v.sigma):
+        return f"{v.name}\u00a0not\u00a0seen"
+    return f"{v.name}\u00a0{v.value:.3g}\u00a0±\u00a0{1.96 * v.sigma:.1g}{_unit(v.unit)}"
 
 
 def _unit(unit: str) -> str:

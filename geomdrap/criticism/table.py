@@ -34,13 +34,20 @@ def errors_of(experiment: Experiment, model: Fitted) -> tuple[float, float, floa
 
 
 def values_of(experiment: Experiment, model: Fitted, scatter: Scatter, effect: str) -> tuple[Value, ...]:
-    """Fitted parameters of an effect with their standard deviations."""
+    """Fitted parameters of an effect with their standard deviations.
+
+    Infinite ones where nothing was fitted, or where the 95 % interval is wider than all values that there can be.
+    """
     rows = np.isfinite(model.fit.residual)
     sigma = deviations(judge_of(experiment, rows).whiten(scatter)(model.fit.slopes[rows]))
     if model.doubt is not None:
         sigma = np.hypot(sigma, model.doubt)
+    own = model.parameters_of(effect)
+    nothing = model.looked_at_only and effect == model.model.effects[-1]
+    seen = [not nothing and 2.0 * 1.96 * sigma[k] < p.high - p.low for p, k in own]
     return tuple(
-        Value(p.name, float(model.values[k]), float(sigma[k]), p.unit) for p, k in model.parameters_of(effect)
+        Value(p.name, float(model.values[k]), float(sigma[k]) if known else np.inf, p.unit)
+        for (p, k), known in zip(own, seen, strict=True)
     )
 
 

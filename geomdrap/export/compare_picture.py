@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from geomdrap.criticism import Comparison
 
 NOISE_ONLY = 1.15
-"""Times what noise alone would give: below, residual vectors are said to be noise."""
+"""Times what noise alone would give: below, residual vectors are said to be noise, unless neighbours are alike."""
 HEADER = 1.1
 PANELS = 4.7
 BARS = 0.8
@@ -121,14 +121,20 @@ def _panels(figure: Any, comparison: Comparison, bottom: float, scale: CompareSc
     _, name, _ = signed_values(comparison)
     views = {"camera": camera, "scale": scale}
     title = "From the predicted to the measured place" if labelled else "Off the part, along its normal"
-    score = comparison.scores.position
-    if score is not None and score.noise is not None and score.rms < NOISE_ONLY * score.noise:
+    if _noise_only(comparison):
         title += ": noise only"
     draw_vectors(figure, boxes[0], comparison, skin, title=title, **views)
     along = f"along warp and weft, vectors × {scale.factor:g}"
     rest = "the same as on the right"
     draw_flat(figure, boxes[1], comparison, scale, f"On the flat fabric: {along if labelled else rest}")
     draw_dots(figure, boxes[2], comparison, skin, title=name, **views)
+
+
+def _noise_only(comparison: Comparison) -> bool:
+    """Whether the residuals of positions are as large as their noise, and neighbours no more alike than by chance."""
+    score, likeness = comparison.scores.position, comparison.structure.position
+    small = score is not None and score.noise is not None and score.rms < NOISE_ONLY * score.noise
+    return small and not (likeness is not None and likeness.alike)
 
 
 def _bars(figure: Any, comparison: Comparison, bottom: float, scale: CompareScale) -> None:

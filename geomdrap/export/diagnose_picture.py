@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geomdrap.criticism.before_after import before_and_after, difference, likeness, placed
-from geomdrap.criticism.story import error_sentence, rival_sentence, unseen_sentences, verdict_sentence
+from geomdrap.criticism.story import error_sentence, fitted_words, rival_sentence, unseen_sentences, verdict_sentence
 from geomdrap.export import palette
 from geomdrap.export.compare_flat import draw_flat
 from geomdrap.export.compare_legend import draw_dot_bar, draw_size_bar
@@ -95,7 +95,7 @@ def _effects(figure: Any, diagnosis: Diagnosis, height: float) -> None:
     axes.tick_params(labelsize=8.5, colors=palette.INK, length=3)
     for name, side in axes.spines.items():
         side.set_visible(name in ("left", "bottom"))
+    axes.text(101.5, len(tried), "held out, and fitted (± 95 %)", fontsize=8.5, va="center", color=palette.INK)
     for k, t in enumerate(tried):
-        values = ", ".join(f"{v.name} {v.value:.3g} ± {1.96 * v.sigma:.1g} {v.unit}".strip() for v in t.values)
-        note = f"held out {t.cv_error:.2f}   {values}"
+        note = f"held out {t.cv_error:.2f}   {fitted_words(t)}"
         axes.text(101.5, k, note, fontsize=8.5, va="center", color=palette.INK if t.selected else palette.FAINT)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
+import geomdrap as gd
 from geomdrap.blind import make
 from geomdrap.cli import cli
 
@@ -63,6 +65,26 @@ def test_diagnose_tries_effects_of_the_users_own(ply: Path, tmp_path: Path) -> N
     assert found["verdict"] == "weave-skew"
     assert "shrinkage" in [effect["name"] for effect in found["effects"]]
     assert {"diagnose.json", "diagnose.png"} <= {path.name for path in (tmp_path / "d").iterdir()}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", ["diagnose", "improve"])
+def test_swapped_labels_are_warned_of_even_quietly(
+    ply: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    few = partial(getattr(gd, command), effects=("weave-skew",))  # what is tried makes no difference here
+    monkeypatch.setattr(gd, command, few)
+    head, *rows = (ply / "measured.csv").read_text().splitlines()
+    names = {"u": "v", "v": "u"}
+    swapped = tmp_path / "swapped.csv"
+    swapped.write_text("\n".join([",".join(names.get(n, n) for n in head.split(",")), *rows]))
+    where = {"diagnose": ["--outputs", "none"], "improve": ["-o", str(tmp_path / "m.toml")]}[command]
+    asked = [command, str(ply / "part.stl"), str(swapped), "--setup", str(ply / "setup.toml"), "--json", "-q"]
+    result = CliRunner().invoke(cli, [*asked, *where], catch_exceptions=False)
+    assert result.exit_code == 0
+    assert result.stderr.startswith("Warning: swapped.csv: it looks as if u and v are swapped")
+    assert "swapped" in json.loads(result.stdout)["warnings"][0]
+    assert not any("swapped" in note for note in json.loads(result.stdout)["notes"])
 
 
 def test_a_model_file_that_is_no_toml_is_refused(ply: Path) -> None:

@@ -52,6 +52,9 @@ def test_a_skew_is_found_whatever_was_recorded(tmp_path, plain, columns):
     assert any("no shear" in hint for hint in d.hints) == (columns != "shear")
     if columns != "positions":
         assert all(amount is None or amount > 0.01 for _, amount, _ in row(d, "yarn-extension").visible)
+    # an interval wider than all that there can be is none
+    tried = [(v, p) for t in d.tried for v, p in zip(t.values, gd.effects.make(t.name).parameters, strict=True)]
+    assert all(v.sigma == np.inf or 2.0 * 1.96 * v.sigma < p.high - p.low for v, p in tried)
 
 
 def test_the_noise_of_directions_may_be_given_or_stand_in_the_table(tmp_path):
@@ -138,4 +141,9 @@ def test_an_effect_that_takes_long_is_looked_at_once_where_there_is_nothing_for_
     # and both the table and the JSON say so of it, and of it alone
     assert [(t.name, t.looked_at_only) for t in d.tried] == [("weave-skew", False), ("shear-stiffness", True)]
     assert [row[1] == "looked at only" for row in table_rows(d)[1:]] == [False, True]
-    assert [e["looked_at_only"] for e in d.as_dict()["effects"]] == [False, True]
+    found = d.as_dict()["effects"]
+    assert [e["looked_at_only"] for e in found] == [False, True]
+    assert [e["parameters"][name]["sigma"] is None for e, name in zip(found, ("skew", "ratio"), strict=True)] == [
+        False,
+        True,
+    ]

@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 
 import geomdrap as gd
 from geomdrap.criticism.compare import compare_net
+from geomdrap.criticism.experiment import Layup
+from geomdrap.criticism.prepare import prepare
 from geomdrap.export.compare_json import as_dict
 from geomdrap.export.compare_table import as_text
 from geomdrap.surface import shapes
@@ -72,3 +74,29 @@ def test_a_table_is_asked_for_as_many_values_as_a_fit_has_unknowns():
     require_values(m, 3, "the placement")
     with pytest.raises(gd.MeasurementError, match=r"few.csv holds 2 points with 6 .* 6 unknowns"):
         require_values(m, 6, "the placement")
+
+
+@pytest.mark.parametrize(("n", "same"), [(1, False), (5, False), (6, False), (9, True)])
+def test_fewer_than_six_places_are_too_few_for_a_diagnosis_and_their_number_is_said(net, n, same):
+    u, v = np.random.default_rng(n).uniform(-30.0, 30.0, (2, n))
+    if same:  # readings of one mark again and again are one place
+        u[:], v[:] = 10.0, 5.0
+    points, shear = net.interpolate(u, v)
+    m = gd.Measurement("few.csv", points, u=u, v=v, shear=shear)
+    layup, noise = Layup("centroid", 20.0), {"sigma_xyz": 0.5, "sigma_shear": 1.0}
+    if n == 6:
+        assert prepare(net.surface, m, layup, **noise)[0].mask.any(axis=1).sum() == 6
+        return
+    places = 1 if same else n
+    with pytest.raises(gd.MeasurementError, match=rf"few.csv: points at {places} places? can .* at 6 places or more"):
+        prepare(net.surface, m, layup, **noise)
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_swapped_labels_are_a_warning_of_a_diagnosis_and_no_note(net, swapped):
+    u, v = np.random.default_rng(2).uniform(-30.0, 30.0, (2, 40))
+    points, _ = net.interpolate(u, v)
+    m = gd.Measurement("marks.csv", points, u=v if swapped else u, v=u if swapped else v)
+    experiment, notes = prepare(net.surface, m, Layup("centroid", 20.0), sigma_xyz=0.5)
+    assert ["u and v are swapped" in warning for warning in experiment.warnings] == [True] * swapped
+    assert not any("swapped" in note for note in notes)

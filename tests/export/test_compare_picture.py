@@ -10,6 +10,7 @@ from analytic_tools import measured
 from PIL import Image
 
 import geomdrap as gd
+from geomdrap.cli.compare_summary import summary
 from geomdrap.criticism.compare import compare_net
 from geomdrap.export.compare_legend import key_figures
 from geomdrap.export.compare_picture import draw, draw_before_after, figure_of
@@ -60,6 +61,20 @@ def test_the_page_says_the_numbers_the_factor_and_the_worst_place(before):
     assert "noise alone" in words
     assert "without prediction" in words
     assert "far along" in words
+
+
+def test_residuals_of_the_size_of_the_noise_are_noise_only_where_neighbours_are_no_more_alike(before):
+    m = replace(before.measurement.take(np.flatnonzero(before.used)), shear=None)
+    there, _ = before.net.interpolate(m.u, m.v)
+    noise = np.random.default_rng(3).normal(0.0, 0.2, there.shape)
+    wave = 0.2 * np.sqrt(2.0) * np.sin((m.u + 2.0 * m.v)[:, None] / 60.0 + np.arange(3.0))
+    scattered, waved = (
+        compare_net(before.net, replace(m, points=there + off), sigma_xyz=0.2) for off in (noise, wave)
+    )
+    assert all(c.scores.position.rms < 1.1 * c.scores.position.noise for c in (scattered, waved))
+    assert ["noise only" in _words(figure_of(c)) for c in (scattered, waved)] == [True, False]
+    # in step with the words of the summary
+    assert ["neighbours are alike" in summary(c, {}) for c in (scattered, waved)] == [False, True]
 
 
 def test_loud_numbers_are_in_alarm_colours_and_quiet_ones_are_not(before):

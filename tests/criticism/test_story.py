@@ -1,0 +1,67 @@
+"""Sentences of a diagnosis: what was not seen is not given as a number, and ± says of what it is."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from geomdrap.criticism.diagnosis import Tried, Value
+from geomdrap.criticism.evidence import Evidence
+from geomdrap.criticism.likelihood import Scatter
+from geomdrap.criticism.story import fitted_words, table_rows, unseen_sentences, verdict_sentence
+from geomdrap.effects import make
+
+WIDE = float("inf")
+
+
+def tried(name, *amounts, sigma=0.01, selected=False, looked_at_only=False):
+    """An effect with the amounts that would be seen of its parameters, at their typical values."""
+    own = make(name).parameters
+    values = tuple(Value(p.name, p.typical, sigma, p.unit) for p in own)
+    visible = tuple((p.name, amount, p.unit) for p, amount in zip(own, amounts, strict=True))
+    evidence = Evidence(name, *[0.0] * (len(Evidence.__dataclass_fields__) - 1))
+    return Tried(name, values, evidence, 0.1, 0.2, 1.0, (), visible, selected, looked_at_only)
+
+
+def diagnosis(verdict, *rows):
+    return SimpleNamespace(verdict=verdict, tried=rows, candidates=(), scatter=Scatter(0.0, 0.0), placement=())
+
+
+def test_thresholds_are_left_out_and_what_acts_downwards_is_seen_below_a_value():
+    d = diagnosis("none", tried("locking", 2.4), tried("crossing-slip", 0.016, 1.3), tried("steering", 0.05, 0.06))
+    text = unseen_sentences(d)[0].replace("\u00a0", " ")
+    assert text == (
+        "Would have been seen: locking below angle 87.6 deg; crossing-slip above share 0.016; "
+        "steering above curvature_warp 0.05 1/m, curvature_weft 0.06 1/m."
+    )
+    # a threshold alone shows nothing
+    assert unseen_sentences(diagnosis("none", tried("crossing-slip", None, 1.3))) == [
+        "Cannot be seen in these data: crossing-slip."
+    ]
+
+
+@pytest.mark.parametrize(("amounts", "all_seen"), [((0.1, 0.1, 0.1), True), ((0.1, None, None), False)])
+def test_nothing_is_missing_only_as_far_as_the_data_show(amounts, all_seen):
+    rows = [tried(n, a) for n, a in zip(("thickness", "weave-skew", "springback"), amounts, strict=True)]
+    text = verdict_sentence(diagnosis("none", *rows))
+    assert text.startswith("Nothing is missing:" if all_seen else "Nothing that can be seen in these data is missing:")
+
+
+def test_no_number_is_given_for_what_was_not_seen_or_not_fitted():
+    assert fitted_words(tried("slip", None, sigma=WIDE)) == "not seen"
+    assert fitted_words(tried("bridging", None, sigma=WIDE, looked_at_only=True)) == "looked at only"
+    steering = tried("steering", 0.1, None)
+    values = (steering.values[0], Value("curvature_weft", 0.0, WIDE, "1/m"))
+    some = fitted_words(Tried(**{**vars(steering), "values": values})).replace("\u00a0", " ")
+    assert some == "curvature_warp 0.5 ± 0.02 1/m, curvature_weft not seen"
+
+
+def test_the_interval_is_said_to_be_that_of_95_percent_wherever_it_stands():
+    d = diagnosis("weave-skew", tried("weave-skew", 0.1, selected=True))
+    assert verdict_sentence(d).replace("\u00a0", " ") == "The model lacks weave-skew (skew 2 ± 0.02 deg; 95 %)."
+    assert table_rows(d)[0][1] == "fitted (± 95 %)"
+    d.verdict, d.placement = "placement", (Value("du", 3.0, 0.1, "mm"),)
+    assert verdict_sentence(d).replace("\u00a0", " ").endswith("du 3 ± 0.2 mm (95 %).")
+    assert np.ptp(d.placement[0].interval) == pytest.approx(2 * 1.96 * 0.1)
