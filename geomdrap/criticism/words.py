@@ -36,7 +36,8 @@ def hints_for(
     """Sentences for the user."""
     hints = []
     if verdict == AMBIGUOUS and len(candidates) > 1:
-        first, second = (rounds[-1 if len(candidates) == 2 else 0].trial(n)[0] for n in candidates[-2:])
+        tried = round_with(rounds, candidates[-2:])
+        first, second = (tried.trial(n)[0] for n in candidates[-2:])
         hints.append(where_they_differ(experiment, first, second))
     places = ", ".join(SEEN[c] for c in left.channels) or "everywhere a little"
     if verdict == AMBIGUOUS and left.structured:
@@ -54,6 +55,11 @@ def hints_for(
             "the shear as it is are not visible; draw a grid on the flat fabric to see them"
         )
     return tuple(hints)
+
+
+def round_with(rounds: Sequence[Round], names: Sequence[str]) -> Round:
+    """The last round in which all these effects were tried: a later one stands on one of them."""
+    return next(r for r in reversed(rounds) if {t.model.effects[-1] for t in r.trials} >= set(names))
 
 
 def where_they_differ(experiment: Experiment, first: Fitted, second: Fitted) -> str:

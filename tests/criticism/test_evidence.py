@@ -1,6 +1,7 @@
 """What counts as found, and what cannot be told apart."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from geomdrap.criticism.evidence import Evidence, alike_in_what_they_leave, amon
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.model import Fitted, Model
 from geomdrap.criticism.search import _in_range
+from geomdrap.criticism.words import round_with
 
 GOOD = Evidence("slip", 60.0, 1, 1e-14, 1e-13, 0.9, 0.5, True)
 
@@ -63,3 +65,12 @@ def test_effects_that_leave_as_little_as_the_best_are_alike_whatever_their_likel
     assert alike_in_what_they_leave([far, close, best]) == ("slip", "close")
     assert alike_in_what_they_leave([replace(GOOD, share=0.6), replace(close, share=0.59)]) == ()
     assert alike_in_what_they_leave([best, replace(close, in_range=False)]) == ("slip",)
+
+
+def test_candidates_are_compared_in_the_last_round_that_tried_them_all():
+    def round_of(*names):
+        return SimpleNamespace(trials=[SimpleNamespace(model=Model(("slip", name))) for name in names])
+
+    rounds = round_of("locking", "shear-stiffness", "slip"), round_of("shear-stiffness", "slip")
+    assert round_with(rounds, ["locking", "shear-stiffness"]) is rounds[0]  # the second stands on locking
+    assert round_with(rounds, ["slip", "shear-stiffness"]) is rounds[1]
