@@ -148,11 +148,19 @@ def _lines(result: dict[str, Any]) -> list[str]:
         rivals = f" ({', '.join(result['candidates'])})" if result["verdict"] == "ambiguous" else ""
         lines += [f"found   {result['verdict']}{rivals}", f"grade   {result['grade']}"]
     for row in result["parameters"]:
-        found = "not fitted" if row["found"] is None else f"found {row['found']:.4g} ± {row['sigma'] or 0.0:.2g}"
-        lines.append(f"  {row['parameter']:16} true {row['true']:.4g}, {found} {row['unit']}".rstrip())
+        lines.append(f"  {row['parameter']:16} true {row['true']:.4g}, {_found(row)}")
     if truth["placement"]:
         off = "du {du:.2f} mm, dv {dv:.2f} mm, dangle {dangle:.2f} deg".format(**truth["placement"])
         lines.append(f"  placement        {off}")
     if truth["scatter"]:
         lines.append("  scatter          {sd:.2f} mm over {length:.0f} mm".format(**truth["scatter"]))
     return lines
+
+
+def _found(row: dict[str, Any]) -> str:
+    """What a diagnosis has of a parameter, with its 95 % interval."""
+    if row["found"] is None:
+        return "not fitted"
+    if row["sigma"] is None:
+        return "not seen"
+    return f"found {row['found']:.4g} ± {1.96 * row['sigma']:.2g} {row['unit']}".rstrip() + " (95 %)"

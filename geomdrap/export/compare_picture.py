@@ -120,9 +120,10 @@ def _panels(figure: Any, comparison: Comparison, bottom: float, scale: CompareSc
     labelled = comparison.measurement.labelled
     _, name, _ = signed_values(comparison)
     views = {"camera": camera, "scale": scale}
-    title = "From the predicted to the measured place" if labelled else "Off the part, along its normal"
+    title = "Predicted to measured place" if labelled else "Off the part, along its normal"
     if _noise_only(comparison):
-        title += ": noise only"
+        shear = comparison.structure.shear
+        title += ": noise only, unlike the shear" if shear is not None and shear.alike else ": noise only"
     draw_vectors(figure, boxes[0], comparison, skin, title=title, **views)
     along = f"along warp and weft, vectors × {scale.factor:g}"
     rest = "the same as on the right"

@@ -20,10 +20,10 @@ from geomdrap.export.picture import DOTS, MARGIN, WIDTH
 if TYPE_CHECKING:
     from geomdrap.criticism.diagnosis import Diagnosis
 
-HEADER = 1.75
 PANELS = 4.4
 BARS = 0.8
 ROW = 0.26
+HEADLINE, LINE = 0.36, 0.22
 """Heights of the parts of the page, inch."""
 
 
@@ -37,9 +37,11 @@ def figure_of(diagnosis: Diagnosis) -> Any:
     from matplotlib.figure import Figure
 
     table = ROW * len(diagnosis.tried) + 1.0
-    height = HEADER + 2 * PANELS + BARS + table
+    headlines, lines = _words(diagnosis)
+    header = 0.3 + HEADLINE * len(headlines) + LINE * len(lines)
+    height = header + 2 * PANELS + BARS + table
     figure = Figure(figsize=(WIDTH, height), dpi=DOTS, facecolor=palette.PAPER)
-    _heading(figure, diagnosis, height)
+    _heading(figure, headlines, lines)
     first, last = placed(diagnosis), before_and_after(diagnosis)[1]
     signature = difference(first, last)
     scale = scale_of([first])
@@ -63,12 +65,8 @@ def figure_of(diagnosis: Diagnosis) -> Any:
     return figure
 
 
-def _heading(figure: Any, diagnosis: Diagnosis, height: float) -> None:
-    wide, high = figure.get_size_inches()
-    y = height - 0.2
-    for line in textwrap.wrap(verdict_sentence(diagnosis), 92)[:2]:
-        figure.text(MARGIN / wide, y / high, line, fontsize=15, fontweight="bold", color=palette.INK, va="top")
-        y -= 0.36
+def _words(diagnosis: Diagnosis) -> tuple[list[str], list[str]]:
+    """The verdict, and what is said of it, in lines."""
     more = [
         error_sentence(diagnosis),
         rival_sentence(diagnosis) or "",
@@ -76,9 +74,18 @@ def _heading(figure: Any, diagnosis: Diagnosis, height: float) -> None:
         *unseen_sentences(diagnosis),
     ]
     lines = [text for sentence in more if sentence for text in textwrap.wrap(sentence, 190)]
-    for line in lines[:5]:
+    return textwrap.wrap(verdict_sentence(diagnosis), 92), lines
+
+
+def _heading(figure: Any, headlines: list[str], lines: list[str]) -> None:
+    wide, high = figure.get_size_inches()
+    y = high - 0.2
+    for line in headlines:
+        figure.text(MARGIN / wide, y / high, line, fontsize=15, fontweight="bold", color=palette.INK, va="top")
+        y -= HEADLINE
+    for line in lines:
         figure.text(MARGIN / wide, y / high, line, fontsize=9.5, color=palette.INK, va="top")
-        y -= 0.22
+        y -= LINE
 
 
 def _effects(figure: Any, diagnosis: Diagnosis, height: float) -> None:

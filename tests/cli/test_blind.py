@@ -101,3 +101,12 @@ def test_a_plain_set_is_solved_right_by_the_product_itself(tmp_path, effect):
     run("make", *made, "-o", tmp_path)
     assert run("solve", tmp_path, "-q")[0] == 0
     assert run("reveal", tmp_path)[0] == 0
+
+
+def test_reveal_gives_the_interval_of_what_was_seen_and_no_number_for_the_rest() -> None:
+    from geomdrap.cli.blind import _found
+
+    row = {"found": 2.99, "sigma": 0.01, "unit": "deg"}
+    assert _found(row) == "found 2.99 ± 0.02 deg (95 %)"
+    assert _found({**row, "sigma": None}) == "not seen"
+    assert _found({**row, "found": None, "sigma": None}) == "not fitted"

@@ -73,7 +73,10 @@ def test_residuals_of_the_size_of_the_noise_are_noise_only_where_neighbours_are_
     )
     assert all(c.scores.position.rms < 1.1 * c.scores.position.noise for c in (scattered, waved))
     assert ["noise only" in _words(figure_of(c)) for c in (scattered, waved)] == [True, False]
-    # in step with the words of the summary
+    # in step with the words of the summary, which are on the shear, too
+    _, shear = before.net.interpolate(m.u, m.v)
+    waved_shear = replace(m, points=there + noise, shear=shear + wave[:, 0])
+    assert "noise only, unlike the shear" in _words(figure_of(compare_net(before.net, waved_shear, sigma_xyz=0.2)))
     assert ["neighbours are alike" in summary(c, {}) for c in (scattered, waved)] == [False, True]
 
 
