@@ -29,3 +29,16 @@ class SweepError(GeomdrapError):
 
 class FormingError(GeomdrapError):
     """A material, a mesh or a run of the mechanical model is not as it must be, or the run did not end well."""
+
+
+def interrupt_within(error: BaseException) -> KeyboardInterrupt | None:
+    """Give the interrupt from the keyboard that an error is, or that came while a compiled kernel ran.
+
+    Such a kernel returns as if all were well, which Python reports as a SystemError with the interrupt as its cause.
+    """
+    if isinstance(error, KeyboardInterrupt):
+        return error
+    if not isinstance(error, SystemError):
+        return None
+    reason = error.__cause__ or error.__context__
+    return None if reason is None else interrupt_within(reason)

@@ -8,7 +8,7 @@ import traceback
 
 import click
 
-from geomdrap.errors import GeomdrapError
+from geomdrap.errors import GeomdrapError, interrupt_within
 
 BAD_INPUT = 2
 BUG = 3
@@ -25,7 +25,7 @@ def exit_code_of(error: BaseException) -> int:
         return BAD_INPUT
     if os.environ.get("GEOMDRAP_TRACEBACK"):
         traceback.print_exception(error)
-    code, message = _meaning(error)
+    code, message = _meaning(interrupt_within(error) or error)
     click.echo(f"Error: {' '.join(message.split())}", err=True)
     return code
 

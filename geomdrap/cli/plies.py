@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from geomdrap.cli.roll import on_roll
+from geomdrap.errors import interrupt_within
 
 if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
@@ -129,8 +130,8 @@ def _write(
 
     try:
         return write_plies(stack, extras, folder, outputs, count, elements)
-    except KeyboardInterrupt:
-        if not written:
+    except (KeyboardInterrupt, SystemError) as error:
+        if not written or interrupt_within(error) is None:
             raise
         said = f"interrupted; {written} of {len(stack)} plies are written, in {folder / 'ply-1'}"
         if written > 1:

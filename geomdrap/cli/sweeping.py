@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import click
 
 from geomdrap.cli.values import Direction
+from geomdrap.errors import interrupt_within
 
 if TYPE_CHECKING:
     from geomdrap.cli.progress import Progress
@@ -174,7 +175,9 @@ def recorded(
     count = Counter(progress, len(cases) + more, done, record, "at most " if more else "")
     try:
         yield Running(pool, earlier, count)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, SystemError) as error:
+        if interrupt_within(error) is None:
+            raise
         raise KeyboardInterrupt(count.interrupted()) from None
     finally:
         if record:

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.errors import DrapeError
-from geomdrap.fields.band import band
-from geomdrap.fields.flat import yarn_lines
+from geomdrap.fields.band import across, band
 from geomdrap.fields.seam_line import FabricFacets, fabric_facets, polylines, stretches_along
 from geomdrap.fields.seams import place_seams
 from geomdrap.fields.strips import Roll, RollStrip, Seam
@@ -42,7 +41,7 @@ def lay_on_roll(result: Drape, width: float, overlap: float = 0.0) -> Roll:
     edges = [low, *levels, high]
     past = 0.5 * overlap
     strips = [
-        strip_of(flat, low if k == 0 else edges[k] - past, high if k == len(levels) else edges[k + 1] + past)
+        strip_of(flat, edges[k], edges[k + 1], (past if k > 0 else 0.0, past if k < len(levels) else 0.0))
         for k in range(len(edges) - 1)
     ]
     return Roll(
@@ -68,17 +67,17 @@ def check_roll(width: float, overlap: float, pitch: float) -> None:
         )
 
 
-def strip_of(flat: FlatPattern, low: float, high: float) -> RollStrip:
-    """The strip between two levels, mm."""
-    contours = band((*flat.outer, *flat.inner), low, high)
+def strip_of(flat: FlatPattern, low: float, high: float, past: tuple[float, float]) -> RollStrip:
+    """The strip between two levels, mm, and how far it reaches ``past`` the lower and the upper, mm."""
+    contours = band((*flat.outer, *flat.inner), low, high, past)
     u = np.concatenate([ring[:, 0] for ring in contours]) if contours else np.zeros(1)
-    return RollStrip((low, high), (float(u.min()), float(u.max())), contours)
+    return RollStrip((low - past[0], high + past[1]), (float(u.min()), float(u.max())), contours)
 
 
 def seam_at(flat: FlatPattern, facets: FabricFacets, level: float, half: float, pitch: float) -> Seam:
     """The seam at a level, mm, in the flat pattern and on the part."""
     line = stretches_along(facets, level, half)
-    pieces = yarn_lines((*flat.outer, *flat.inner), np.array([level]), 1)
+    pieces = tuple(np.column_stack([u, [level] * 2]) for u in across((*flat.outer, *flat.inner), level))
     if not len(line.u):
         return Seam(level, pieces, (), 0.0, np.full(3, np.nan))
     size = np.abs(line.shear)

@@ -6,7 +6,7 @@ import hashlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from geomdrap.errors import GeomdrapError
+from geomdrap.errors import GeomdrapError, interrupt_within
 from geomdrap.fields import evaluate
 from geomdrap.fields.figures import figures
 from geomdrap.fishnet import drape
@@ -49,7 +49,7 @@ class Job:
         return evaluate(self.drape(case), self.limit_angle)
 
     def row(self, case: Case) -> Row:
-        """The row of a case; one that cannot be draped is a row with the reason."""
+        """The row of a case; one that cannot be draped is a row with the reason. Raises KeyboardInterrupt."""
         try:
             net = self.drape(case)
             return row_of_figures(case.origin, net, figures(net, self.limit_angle))
@@ -58,6 +58,9 @@ class Job:
         except MemoryError:
             return failed(case.origin, case.angle, "not enough memory; a larger pitch needs less")
         except Exception as error:  # hours of other cases must not be lost by one
+            interrupt = interrupt_within(error)
+            if interrupt is not None:
+                raise interrupt from None
             return failed(case.origin, case.angle, f"this is a bug in geomdrap ({type(error).__name__}: {error})")
 
     def settings(self) -> dict[str, Any]:

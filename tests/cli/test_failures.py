@@ -20,6 +20,11 @@ from geomdrap.errors import DrapeError
 
 Run = Callable[..., Result]
 
+IN_A_KERNEL = SystemError("<function kernel> returned a result with an exception set")
+IN_A_KERNEL.__cause__ = KeyboardInterrupt()
+OTHER_SYSTEM_ERROR = SystemError("odd")
+OTHER_SYSTEM_ERROR.__context__ = ZeroDivisionError()
+
 
 def _raising(error: BaseException) -> Callable[..., None]:
     def compute(*_: object, **__: object) -> None:
@@ -40,6 +45,8 @@ def _raising(error: BaseException) -> Callable[..., None]:
         (OSError("odd"), 2, "Error: odd"),
         (MemoryError(), 2, "not enough memory"),
         (KeyboardInterrupt(), 130, "interrupted"),
+        (IN_A_KERNEL, 130, "interrupted"),
+        (OTHER_SYSTEM_ERROR, 3, "a bug in geomdrap (SystemError: odd)"),
         (ZeroDivisionError("by zero"), 3, "a bug in geomdrap (ZeroDivisionError: by zero)"),
     ],
     ids=lambda value: type(value).__name__ if isinstance(value, BaseException) else "",

@@ -11,7 +11,7 @@ from made_parts import plate_with_holes
 
 import geomdrap as gd
 from geomdrap.errors import DrapeError
-from geomdrap.fields.band import band
+from geomdrap.fields.band import across, band
 from geomdrap.fields.contour import is_simple, signed_area
 from geomdrap.fields.roll import lay_on_roll
 from geomdrap.fields.seams import place_seams, strips_needed
@@ -19,6 +19,7 @@ from geomdrap.surface import Surface, shapes
 
 SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]])
 HOLE = np.array([[40.0, 40.0], [40.0, 60.0], [60.0, 60.0], [60.0, 40.0]])  # clockwise
+L_SHAPE = np.array([[0, 0], [100, 0], [100, 50], [50, 50], [50, 100], [0, 100]], float)
 U_SHAPE = np.array([[0, 0], [90, 0], [90, 60], [60, 60], [60, 20], [30, 20], [30, 80], [0, 80]], float)
 HILL = shapes.grid_surface(
     lambda x, y: 30.0 * np.exp(-((x / 40.0) ** 2 + ((y + 5.0) / 40.0) ** 2)),
@@ -80,6 +81,37 @@ def test_what_is_below_the_teeth_of_a_comb_is_closed_across_each_tooth():
     on_line = (ring[:, 1] == 35.0) & (sides[:, 1] == 0.0)
     assert sorted(-sides[on_line, 0]) == [10.0, 20.0, 30.0]  # widths of the teeth, all to the left
     assert np.abs(sides).sum() == 2 * 90.0 + 2 * 35.0 + 4 * 15.0
+
+
+@pytest.mark.parametrize("rounding", [0.0, 1e-13, -1e-13])
+def test_a_band_over_a_side_that_lies_on_its_line_has_no_spur_along_it(rounding):
+    shape = L_SHAPE + [[0, 0], [0, 0], [0, rounding], [0, -rounding], [0, 0], [0, 0]]
+    (upper,), (lower,) = band((shape,), 50.0, 100.0), band((shape,), 0.0, 50.0)
+    assert (upper[:, 0].min(), upper[:, 0].max()) == pytest.approx((0.0, 50.0), abs=1e-9)
+    assert (signed_area(upper), signed_area(lower)) == pytest.approx((2500.0, 5000.0), rel=1e-12)
+    np.testing.assert_allclose(across((shape,), 50.0), [[0.0, 50.0]], atol=1e-9)
+
+
+def test_a_band_reaches_past_its_line_only_where_the_region_goes_on_across_it():
+    (leg,) = band((L_SHAPE,), 52.0, 100.0, (5.0, 0.0))  # the side at 50 is no seam
+    assert (leg[:, 0].max(), leg[:, 1].min()) == pytest.approx((50.0, 47.0), abs=1e-9)
+    assert signed_area(leg) == pytest.approx(50.0 * 53.0, rel=1e-12)
+    (foot,) = band((L_SHAPE,), 0.0, 45.0, (0.0, 20.0))  # as far as there is some
+    assert signed_area(foot) == pytest.approx(100.0 * 50.0 + 50.0 * 15.0, rel=1e-12)
+    arms = band((U_SHAPE,), 30.0, 80.0, (5.0, 0.0))
+    assert sorted(signed_area(r) for r in arms) == pytest.approx([30.0 * 35.0, 30.0 * 55.0], rel=1e-12)
+
+
+def test_what_a_band_has_past_its_line_goes_round_holes():
+    for low, past, area, count in ((0.0, 10.0, 100 * 45 - 20 * 5, 1), (0.0, 40.0, 100 * 75 - 400, 2)):
+        rings = band((SQUARE, HOLE), low, 35.0, (0.0, past))
+        assert sum(signed_area(r) for r in rings) == pytest.approx(area, rel=1e-12)
+        assert len(rings) == count
+        assert is_simple(rings)
+    left, right = band((SQUARE, HOLE), 48.0, 52.0, (20.0, 20.0))  # past the hole each stays on its side
+    assert (signed_area(left), signed_area(right)) == pytest.approx((40.0 * 44.0, 40.0 * 44.0), rel=1e-12)
+    (whole,) = band((SQUARE, HOLE), 0.0, 50.0, (0.0, 20.0))
+    assert signed_area(whole) == pytest.approx(100.0 * 50.0 - 200.0 + 80.0 * 20.0, rel=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -162,6 +194,15 @@ def test_overlapping_strips_are_wider_by_the_overlap_and_lie_double_there():
     assert sum(strip.area for strip in roll.strips) == pytest.approx(result.flat.area + 2 * 20.0 * 300.0, rel=1e-9)
     for below, seam, above in zip(roll.strips[:-1], roll.seams, roll.strips[1:], strict=True):
         assert (below.v[1], above.v[0]) == pytest.approx((seam.v + 10.0, seam.v - 10.0))
+
+
+def test_overlaps_of_an_l_add_their_width_times_the_length_of_the_seams_wherever_these_lie():
+    part = shapes.l_shape(radius=np.inf)
+    for width, overlap in ((100.0, 0.0), (100.0, 10.0), (110.0, 20.0), (300.0, 30.0)):
+        result, roll = laid(part, width, overlap, origin=(-100.0, -100.0, 0.0))
+        seams = sum(seam.length for seam in roll.seams)
+        assert sum(strip.area for strip in roll.strips) == pytest.approx(result.flat.area + overlap * seams, rel=1e-9)
+        assert all(is_simple(strip.contours) for strip in roll.strips)
 
 
 def test_a_roll_as_wide_as_the_pattern_needs_no_seam():

@@ -36,6 +36,15 @@ class Wrong(gd.Effect):
         return net
 
 
+class Interrupted(gd.Effect):
+    """At 30° raises what Python makes of a Ctrl-C that comes while a compiled kernel runs."""
+
+    def on_net(self, net: gd.Net) -> gd.Net:
+        if net.angle == ANGLE:
+            raise SystemError("<function kernel> returned a result with an exception set") from KeyboardInterrupt()
+        return net
+
+
 class Slow(gd.Effect):
     """Takes its time, and writes down which process draped which case."""
 

@@ -9,7 +9,7 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
-from deadly import ANGLE, Deadly, Wrong
+from deadly import ANGLE, Deadly, Interrupted, Wrong
 from made_parts import bumpy_sheet
 
 import geomdrap as gd
@@ -65,6 +65,13 @@ def test_a_bug_in_one_case_is_a_row_that_says_so_and_others_go_on() -> None:
     bad = [row for row in rows if row.reason is not None]
     assert {row.angle for row in bad} == {ANGLE}
     assert all("this is a bug in geomdrap (ZeroDivisionError: one by nought)" in (row.reason or "") for row in bad)
+
+
+def test_an_interrupt_within_a_kernel_ends_the_run_and_is_no_row() -> None:
+    seen: list[Row] = []
+    with pytest.raises(KeyboardInterrupt):
+        run(_job(Interrupted()), CASES, on_row=seen.append)
+    assert [row.angle for row in seen] == [0.0]
 
 
 def test_where_a_worker_dies_once_no_row_is_lost_and_none_comes_twice(tmp_path: Path) -> None:
