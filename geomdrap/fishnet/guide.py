@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 FINE = 0.1  # cells between the points of a curve when it is laid onto the part
-ROUNDS, AGREES_RAD, NEARLY_RAD = 40, 1e-10, 1e-4
+ROUNDS, AGREES_RAD, NEARLY_RAD = 60, 1e-10, 1e-4
 SHARPEST_RAD = math.radians(60.0)  # turn at a node beyond which a curve bends too tightly for the pitch
 TO_AND_FRO = 200
 WINDOW = 2.0  # sides ahead in which the curve is looked for
@@ -158,7 +158,7 @@ def _next_turn(
     face, x, y, dx, dy = ray
     here, normal = np.array(in_space(mesh.frames, face, x, y)), np.array(normal_of(mesh.frames, face))
     ahead = at + sense * WINDOW * side
-    turn = 0.0
+    turn, low, high = 0.0, -math.pi, math.pi
     for _ in range(ROUNDS):
         c, s = math.cos(turn), math.sin(turn)
         status, f, ex, ey, ax, ay, *_ = follow(
@@ -172,9 +172,11 @@ def _next_turn(
             return 0.0, None, to
         is_at, should = end - here, foot - here
         error = math.atan2(float(normal @ np.cross(is_at, should)), float(is_at @ should))
-        if abs(error) < AGREES_RAD:
+        low, high = (turn, high) if error > 0.0 else (low, turn)
+        if abs(error) < AGREES_RAD or high - low < AGREES_RAD:
             break
-        turn += error
-    if not abs(error) < NEARLY_RAD:
+        # laid onto facets a curve has corners, between which the nearest place may jump: halve what is left
+        turn = turn + error if low < turn + error < high else 0.5 * (low + high)
+    if not (abs(error) < NEARLY_RAD or high - low < NEARLY_RAD):
         turn = math.nan
     return turn, (int(f), ex, ey, ax, ay), to

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from made_parts import bumpy_sheet
+from made_parts import bumpy_sheet, sheet
 
 import geomdrap as gd
 from geomdrap.cli import cli
@@ -161,3 +161,18 @@ def test_the_command_takes_guides_from_files(tmp_path: Path, monkeypatch: pytest
         assert words in result.stderr
     (tmp_path / "spine.csv").write_text("a,b\n1,2\n")
     assert "no column x, y, z" in CliRunner().invoke(cli, asked, catch_exceptions=False).stderr
+
+
+@pytest.mark.parametrize("y", [40.0, 45.0, 50.0])
+def test_a_smooth_curve_is_followed_however_finely_it_is_sampled(y: float) -> None:
+    """Laid onto the facets it has a corner at each edge, where the nearest place may jump."""
+
+    def bell(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return np.asarray(60.0 * np.exp(-(x**2 + y**2) / 3200.0))
+
+    grid = np.meshgrid(np.linspace(-100, 100, 61), np.linspace(-100, 100, 61), indexing="ij")
+    x = np.arange(-100.0, 100.5, 1.0)
+    curve = np.column_stack([x, np.full(len(x), y), bell(x, np.full(len(x), y))])
+    nodes = _warp(gd.drape(sheet(np.stack([*grid, bell(*grid)], axis=2)), pitch=5.0, warp_guide=curve))
+    assert len(nodes) > 38
+    assert np.abs(nodes[:, 1] - y).max() < 0.1
