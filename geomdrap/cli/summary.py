@@ -48,6 +48,9 @@ def _roll(roll: Roll) -> Iterator[tuple[str, str]]:
     if not roll.strips:
         many = "no fabric to lay"
     yield "roll", f"{roll.width:g} mm wide: {many}, {roll.length:.1f} mm used, {_percent(roll.waste)} of it wasted"
+    for number, strip in enumerate(roll.strips, start=1):
+        if strip.pieces > 1:
+            yield "", f"strip {number} is of {strip.pieces} loose pieces; the gaps between them count as used"
     for seam in roll.seams:
         yield "", f"seam at v = {seam.v:.1f} mm, {seam.length:.1f} mm long, crosses shear up to {seam.max_shear:.2f}°"
 

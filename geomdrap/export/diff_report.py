@@ -12,8 +12,8 @@ from geomdrap.export.diff import Change, Tolerance
 
 # which files were asked for, and which version wrote them, is not part of the result
 _NOT_COMPARED = ("files", "version")
-_DEGREES = ("shear", "angle", "limit_angle", "curvature_residual")
-_SHARES = ("coverage", "share")
+_DEGREES = ("shear", "max_shear", "angle", "limit_angle", "curvature_residual")
+_SHARES = ("coverage", "share", "waste")
 _AREAS = ("area",)
 _MISSING = object()
 

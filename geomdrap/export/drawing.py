@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.export.report_json import is_incomplete
+from geomdrap.fields.contour import TOUCH
 from geomdrap.fields.flat import yarn_lines
 
 if TYPE_CHECKING:
     from geomdrap.fields import Drape, FlatPattern
-    from geomdrap.fields.strips import Roll
+    from geomdrap.fields.strips import Roll, RollStrip
 
 Floats = NDArray[np.float64]
 
@@ -91,9 +93,14 @@ def seam_layers(result: Drape) -> Iterator[Layer]:
         return
     yield Layer("SEAMS", 0x138A36, 94, open_lines(tuple(line for seam in result.roll.seams for line in seam.pieces)))
     if result.roll.overlap > 0.0:
-        edges = np.array([v + d * result.roll.overlap for v in (s.v for s in result.roll.seams) for d in (-0.5, 0.5)])
-        lines = yarn_lines((*result.flat.outer, *result.flat.inner), edges, 1)
-        yield Layer("STRIP_EDGES", 0x7CC08F, 84, open_lines(lines))
+        lines = [line for pair in pairwise(result.roll.strips) for line in overlap_edges(*pair)]
+        yield Layer("STRIP_EDGES", 0x7CC08F, 84, open_lines(tuple(lines)))
+
+
+def overlap_edges(lower: RollStrip, upper: RollStrip) -> Iterator[Floats]:
+    """Stretches (2, 2) mm where two strips end past the seam between them, a hair inside of each."""
+    yield from yarn_lines(upper.contours, np.array([upper.v[0] + TOUCH]), 1)
+    yield from yarn_lines(lower.contours, np.array([lower.v[1] - TOUCH]), 1)
 
 
 def pattern_corners(flat: FlatPattern) -> tuple[Floats, Floats]:

@@ -65,7 +65,7 @@ def roll_as_dict(roll: Roll) -> dict[str, Any]:
     """Give the JSON object of a pattern laid from strips of a roll."""
     return {
         **_fields(roll, "width", "overlap", "length", "waste"),
-        "strips": [_fields(strip, "v", "u", "length", "area") for strip in roll.strips],
+        "strips": [_fields(strip, "v", "u", "length", "area", "pieces") for strip in roll.strips],
         "seams": [
             {
                 **_fields(seam, "v", "length"),

@@ -27,6 +27,11 @@ class RollStrip:
         return self.u[1] - self.u[0]
 
     @property
+    def pieces(self) -> int:
+        """How many loose pieces it is of; ``length`` has the gaps between them."""
+        return sum(signed_area(ring) > 0.0 for ring in self.contours)
+
+    @property
     def area(self) -> float:
         """Of the pattern within the strip, mm²."""
         return float(sum(signed_area(ring) for ring in self.contours))

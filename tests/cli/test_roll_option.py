@@ -6,8 +6,13 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import Result
+
+from geomdrap.cli.summary import _roll
+from geomdrap.export.report_json import roll_as_dict
+from geomdrap.fields.strips import Roll, RollStrip
 
 SADDLE = Path(__file__).parents[2] / "samples" / "parts" / "saddle.stl"
 DRAPE = ("drape", SADDLE, "--pitch", "15")
@@ -23,6 +28,13 @@ def test_strips_and_seams_are_told_in_the_summary_and_in_drape_json(run: Callabl
     words = run(*DRAPE, "--roll-width", "120", "--seam-overlap", "10", "--outputs", "none").stdout
     assert f"120 mm wide: {len(roll['strips'])} strips, {roll['length']:.1f} mm used" in words
     assert words.count("seam at v = ") == len(roll["seams"])
+
+
+def test_a_strip_of_loose_pieces_is_said_to_be_one() -> None:
+    arms = tuple(np.array([[x, 0], [x + 30, 0], [x + 30, 60], [x, 60]], float) for x in (0, 60))
+    roll = Roll(60.0, 0.0, (RollStrip((0.0, 60.0), (0.0, 90.0), arms),), ())
+    assert roll_as_dict(roll)["strips"][0]["pieces"] == 2
+    assert "strip 1 is of 2 loose pieces; the gaps between them count as used" in [words for _, words in _roll(roll)]
 
 
 def test_a_roll_as_wide_as_the_pattern_is_said_to_need_no_seam(run: Callable[..., Result]) -> None:

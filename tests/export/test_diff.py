@@ -146,6 +146,13 @@ def test_every_number_of_the_report_is_judged_in_its_unit(
     assert change.amount == pytest.approx(0.01)
 
 
+@pytest.mark.parametrize(("key", "unit"), [("waste", ""), ("length", "mm"), ("max_shear", "deg"), ("area", "mm²")])
+def test_numbers_of_a_roll_are_judged_in_their_units(tmp_path: Path, key: str, unit: str) -> None:
+    old, new = (json.dumps({"roll": {key: value}}) for value in (0.25, 0.75))
+    (change,) = _files(tmp_path, "drape.json", old, new).changes
+    assert (change.where, change.unit) == (f"roll.{key}", unit)
+
+
 def test_counts_have_no_tolerance(tmp_path: Path) -> None:
     (change,) = _files(tmp_path, "a.json", '{"nodes": 5}', '{"nodes": 6}', Tolerance(10, 10)).changes
     assert change.amount == 1

@@ -13,9 +13,10 @@ import pytest
 import geomdrap as gd
 from geomdrap.export import cut_dxf, cut_pdf, dxf, picture, report_html, report_json, svg
 from geomdrap.export.cut_pieces import APART_STRIPS, cut_pieces
-from geomdrap.export.drawing import flat_drawing
+from geomdrap.export.drawing import flat_drawing, overlap_edges
 from geomdrap.fields.contour import is_simple, signed_area
 from geomdrap.fields.roll import lay_on_roll
+from geomdrap.fields.strips import RollStrip
 from geomdrap.surface import shapes
 
 OVERLAP = 20.0
@@ -66,6 +67,12 @@ def test_flat_files_have_a_layer_of_seams_and_one_of_the_edges_of_overlapping_st
     assert '<g id="seams"' in svg.svg_text(flat_drawing(result))
     assert "seam" not in svg.svg_text(flat_drawing(bare_result))
     assert {layer.name for layer in flat_drawing(bare_result).layers}.isdisjoint({"SEAMS", "STRIP_EDGES"})
+
+
+def test_edges_of_overlaps_are_drawn_only_as_far_as_the_strips_reach():
+    lower = RollStrip((0.0, 55.0), (0.0, 100.0), (np.array([[0, 0], [100, 0], [100, 48], [50, 48], [50, 55], [0, 55.0]]),))
+    upper = RollStrip((45.0, 90.0), (0.0, 50.0), (np.array([[0, 45], [50, 45], [50, 90], [0, 90.0]]),))
+    np.testing.assert_allclose(list(overlap_edges(lower, upper)), [[[0, 45], [50, 45]], [[0, 55], [50, 55]]], atol=2e-6)
 
 
 def test_each_strip_is_a_piece_of_its_own_that_lies_apart_from_the_next(result):
