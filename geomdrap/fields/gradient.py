@@ -136,6 +136,16 @@ def gradient_near(gradient: np.ndarray, p: float, q: float) -> tuple[float, floa
     )
 
 
+@inlined
+def slope_kept(gradient: np.ndarray, known: np.ndarray, i: int, j: int, axis: int) -> float:
+    """``slope_near``, found once for each place of the net and kept in ``known``, NaN where it is not."""
+    if not (0 <= i < known.shape[0] and 0 <= j < known.shape[1]):
+        return slope_near(gradient, i, j, axis)
+    if math.isnan(known[i, j, axis]):
+        known[i, j, axis] = slope_near(gradient, i, j, axis)
+    return known[i, j, axis]
+
+
 @kernel
 def turn_by(vector: np.ndarray, normal: np.ndarray, angle_rad: float, out: np.ndarray) -> None:
     """Turn a vector (3,) across a unit normal counter-clockwise about it."""
@@ -193,6 +203,7 @@ def bend_cells(at: np.ndarray, yarns: np.ndarray, gradient: np.ndarray) -> None:
 
     A yarn that turns by κ per cell lies κ s (1 - s) / 2 of a cell beside the chord at the share s of a side.
     """
+    known = np.full(gradient.shape, np.nan)  # many vertices ask for the same slopes
     for v in range(len(at)):
         if math.isnan(at[v, 0]):
             continue
@@ -204,7 +215,8 @@ def bend_cells(at: np.ndarray, yarns: np.ndarray, gradient: np.ndarray) -> None:
         for c in range(3):
             cosine += yarns[0, i + k, j + m, c] * yarns[1, i + k, j + m, c]
         sine = math.sqrt(1.0 - cosine * cosine)
-        along_u, along_v = gradient_near(gradient, at[v, 0], at[v, 1])
+        along_u = slope_kept(gradient, known, int(math.floor(at[v, 0] + 0.5)), int(math.floor(at[v, 1])), 0)
+        along_v = slope_kept(gradient, known, int(math.floor(at[v, 0])), int(math.floor(at[v, 1] + 0.5)), 1)
         left = -0.5 * s * (1.0 - s) * along_u  # of the chord of the warp; of the weft's, the other sign
         right = -0.5 * t * (1.0 - t) * along_v
         # across the warp is (weft - cosine warp) / sine, across the weft (cosine weft - warp) / sine
