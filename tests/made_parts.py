@@ -34,6 +34,12 @@ def sheet(points, diagonals=None):
     return Surface(points.reshape(-1, 3), np.concatenate([first.reshape(-1, 3), second.reshape(-1, 3)]))
 
 
+def plane_sheet(cells=10, side=100.0):
+    """A flat square of ``side`` mm in the plane z = 0, a corner at the origin."""
+    x = np.linspace(0.0, side, cells + 1)
+    return sheet(np.stack([*np.meshgrid(x, x, indexing="ij"), np.zeros((cells + 1, cells + 1))], axis=-1))
+
+
 def pyramid(sides=12, slope=0.8, radius=100.0, rings=10):
     """A pyramid of plane sides, apex up at the origin: developable but for its tip, to the last digit."""
     turn = 2 * np.pi * np.arange(sides) / sides

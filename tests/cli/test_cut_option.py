@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from made_parts import open_box, sheet
+from made_parts import open_box, plane_sheet
 
 from geomdrap.surface import Surface
 
@@ -66,9 +66,7 @@ def test_a_cut_that_stays_shut_is_drawn_in_every_file_that_is_cut_from(run, tmp_
     import ezdxf
     import trimesh
 
-    part = sheet(
-        np.stack([*np.meshgrid(np.linspace(0, 60, 7), np.linspace(0, 60, 7), indexing="ij"), np.zeros((7, 7))], 2)
-    )
+    part = plane_sheet(6, 60.0)
     trimesh.Trimesh(part.points, part.triangles, process=False).export(tmp_path / "plate.stl")
     (tmp_path / "slit.csv").write_text("x,y,z\n15,22,0\n42,38,0\n")
     options = ("--pitch", "5", "--origin", "30,50,0", "--outputs", "dxf,svg,cut", "--cut", "slit.csv", "-o", "out")

@@ -2,22 +2,15 @@
 
 import numpy as np
 import pytest
+from made_parts import plane_sheet
 
 import geomdrap as gd
 from geomdrap.surface.shapes import sphere_cap
 
 
-def sheet(cells=12, side=120.0):
-    x = np.linspace(0.0, side, cells + 1)
-    points = np.stack([*np.meshgrid(x, x, indexing="ij"), np.zeros((cells + 1, cells + 1))], axis=-1).reshape(-1, 3)
-    n = np.arange((cells + 1) ** 2).reshape(cells + 1, -1)
-    a, b, c, d = (corner.ravel() for corner in (n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]))
-    return gd.Surface(points, np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])]))
-
-
 @pytest.mark.parametrize("line", [[[30, 42, 0], [80, 47, 0]], [[0, 33, 0], [71, 52, 0]]], ids=["within", "from the rim"])
 def test_a_cut_in_a_plane_sheet_lies_in_the_pattern_where_it_was_drawn(line):
-    drape = gd.evaluate(gd.drape(sheet().cut(line), (60.0, 90.0, 0.0), 20.0, 5.0))
+    drape = gd.evaluate(gd.drape(plane_sheet(12, 120.0).cut(line), (60.0, 90.0, 0.0), 20.0, 5.0))
     line = np.array(line, float)
     drawn = np.array(drape.flat.cuts)
     assert np.linalg.norm(drawn[:, 1] - drawn[:, 0], axis=1).sum() == pytest.approx(

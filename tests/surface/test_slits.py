@@ -4,21 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from made_parts import bumpy_sheet, pyramid
+from made_parts import bumpy_sheet, plane_sheet, pyramid
 
 import geomdrap as gd
 from geomdrap.errors import SurfaceError
 
 SLOPE = 1.0  # of a cone that no fabric covers in one piece: 105° would be missing at its tip
-
-
-def sheet(cells=10, side=100.0):
-    """A flat square of ``side`` mm in the plane z = 0, a corner at the origin."""
-    x = np.linspace(0.0, side, cells + 1)
-    points = np.stack([*np.meshgrid(x, x, indexing="ij"), np.zeros((cells + 1, cells + 1))], axis=-1).reshape(-1, 3)
-    n = np.arange((cells + 1) ** 2).reshape(cells + 1, -1)
-    a, b, c, d = (corner.ravel() for corner in (n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]))
-    return gd.Surface(points, np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])]))
 
 
 def require_sound(part):
@@ -50,7 +41,7 @@ def rim_length(part):
     ids=["slit", "from the rim", "across", "along edges", "along diagonals", "closed"],
 )
 def test_a_cut_lengthens_the_rim_by_its_two_sides_and_changes_nothing_else(line, loops, pieces):
-    part = sheet()
+    part = plane_sheet()
     cut = part.cut(line)
     length = np.linalg.norm(np.diff(np.array(line, float), axis=0), axis=1).sum()
     require_sound(cut)
@@ -65,7 +56,7 @@ def test_a_cut_lengthens_the_rim_by_its_two_sides_and_changes_nothing_else(line,
 
 
 def test_faces_keep_the_numbers_of_those_that_they_are_pieces_of():
-    part = sheet()
+    part = plane_sheet()
     cut = part.cut([[20, 30, 0], [60, 41, 0]])
     areas = np.bincount(cut.source_face, cut.areas, len(part.triangles))
     np.testing.assert_allclose(areas, part.areas, rtol=1e-12)
@@ -116,11 +107,11 @@ def test_a_cone_cut_open_is_flat(seed):
 )
 def test_lines_that_are_none_are_refused(line, words):
     with pytest.raises(SurfaceError, match=words):
-        sheet().cut(line, names=["dart.csv"])
+        plane_sheet().cut(line, names=["dart.csv"])
 
 
 def test_a_line_that_runs_past_a_notch_is_refused():
-    part = sheet()
+    part = plane_sheet()
     middle = part.points[part.triangles].mean(axis=1)
     notched = gd.Surface(part.points, part.triangles[~((abs(middle[:, 0] - 50) < 10) & (middle[:, 1] < 60))])
     with pytest.raises(SurfaceError, match="it meets the rim"):
@@ -134,7 +125,7 @@ def test_lines_may_cross_and_touch_and_cross_themselves():
     star = [[50, 50, 0], [20, 30, 0]], [[50, 50, 0], [70, 20, 0]], [[50, 50, 0], [60, 85, 0]]
     knot = ([[20, 50, 0], [80, 50, 0], [60, 80, 0], [43, 20, 0]],)
     for lines, pieces in ((cross, 1), (tee, 1), (star, 1), (knot, 2)):
-        cut = sheet().cut(*lines)
+        cut = plane_sheet().cut(*lines)
         require_sound(cut)
         length = sum(np.linalg.norm(np.diff(np.array(line, float), axis=0), axis=1).sum() for line in lines)
         assert cut.cut_length == pytest.approx(length, rel=2e-3)
@@ -144,15 +135,15 @@ def test_lines_may_cross_and_touch_and_cross_themselves():
 
 def test_what_is_cut_twice_counts_once_and_a_cut_along_the_rim_is_refused():
     line = [[20, 50, 0], [80, 50, 0]]
-    once, twice = sheet().cut(line), sheet().cut(line, [*line, [50, 50, 0]])
+    once, twice = plane_sheet().cut(line), plane_sheet().cut(line, [*line, [50, 50, 0]])
     assert twice.cut_length == pytest.approx(once.cut_length, rel=1e-12)
     assert len(twice.boundary_loops) == len(once.boundary_loops)
     with pytest.raises(SurfaceError, match="runs along the rim and cuts nothing"):
-        sheet().cut([[0, 20, 0], [0, 80, 0]])
+        plane_sheet().cut([[0, 20, 0], [0, 80, 0]])
 
 
 def test_a_piece_that_cuts_part_off_is_warned_of_with_its_area():
-    cut = sheet().cut([[0, 33, 0], [100, 33, 0]])
+    cut = plane_sheet().cut([[0, 33, 0], [100, 33, 0]])
     net = gd.drape(cut, (50.0, 70.0, 0.0), 0.0, 5.0)
     (said,) = (w for w in net.warnings if "pieces with its cuts" in w)
     assert "6700 mm², and 3300 mm² are left out" in said
