@@ -14,8 +14,12 @@ if TYPE_CHECKING:
 SHUT = 1e-3  # of the pitch: sides nearer than this lie upon each other, and no contour shows them
 
 
-def shut_cuts(trimmed: Trimmed, pitch: float) -> tuple[np.ndarray, ...]:
-    """Pieces (2, 2) mm of the flat fabric along which it is cut, but both sides stay where they are."""
+def shut_cuts(trimmed: Trimmed, pitch: float, reach: tuple[float, float] | None) -> tuple[np.ndarray, ...]:
+    """Pieces (2, 2) mm of the flat fabric along which it is cut, but both sides stay where they are.
+
+    Those beyond the blank, ``reach`` half lengths mm, are left out, by their middles.
+    """
+    half = np.inf if reach is None else np.asarray(reach)
     mesh, at = trimmed.mesh, trimmed.at
     face, edge = np.nonzero((mesh.neighbours < 0) & (trimmed.kind > 0)[:, None])
     after = (edge + 1) % 3
@@ -26,7 +30,8 @@ def shut_cuts(trimmed: Trimmed, pitch: float) -> tuple[np.ndarray, ...]:
     found = []
     for n, (a, b) in enumerate(zip(*ends, strict=True)):
         m = there.get(np.concatenate([b, a]).tobytes(), -1)
-        if m > n and np.abs(flat[n] - flat[m][::-1]).max() < SHUT * pitch:
+        within = (np.abs(flat[n].mean(axis=0)) <= half).all()
+        if m > n and within and np.abs(flat[n] - flat[m][::-1]).max() < SHUT * pitch:
             found.append(flat[n])
     return tuple(found)
 

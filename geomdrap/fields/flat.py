@@ -37,7 +37,7 @@ def flat_pattern(net: Net, trimmed: Trimmed, limit_angle: float) -> FlatPattern:
         warp_lines=yarn_lines(contours, net.v, 1),
         weft_lines=yarn_lines(contours, net.u, 0),
         locked=locked_zones(net, limit_angle),
-        cuts=shut_cuts(trimmed, net.pitch) if net.surface.cuts else (),
+        cuts=shut_cuts(trimmed, net.pitch, net.reach) if net.surface.cuts else (),
     )
 
 

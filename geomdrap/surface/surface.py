@@ -247,6 +247,8 @@ class Surface:
         ``names`` are how messages call them. Raises SurfaceError for fewer than two points, points further from the
         part than a hundredth of its diagonal, lines that do not run over the part, and cuts that cut nothing.
         """
+        if not lines:
+            raise SurfaceError(f"{self.source}: there is no line to cut along; give one at least")
         called = list(names) if names is not None else [f"cut {n}" for n in range(1, len(lines) + 1)]
         laid = [self._laid(_line(points, name), name) for points, name in zip(lines, called, strict=True)]
         mesh, length = cut_along(self._mesh, laid)

@@ -34,3 +34,11 @@ def test_a_tear_behind_a_cut_is_warned_of_and_a_part_without_cuts_has_no_cut_lin
     line = [dome.nearest([[x, x, 100.0]]).point[0] for x in (20.0, 35.0, 45.0)]
     cut = gd.evaluate(gd.drape(dome.cut(line), (0.0, 0.0, 100.0), 0.0, 5.0))
     assert any("behind a cut the fabric of its two sides does not join" in w for w in cut.warnings)
+
+
+def test_a_cut_ends_with_the_blank():
+    part = plane_sheet(12, 120.0).cut([[60, 60, 0], [110, 60, 0]])
+    drape = gd.evaluate(gd.drape(part, (60.0, 50.0, 0.0), 0.0, 5.0, reach=(30.0, 25.0)))
+    ends = np.array(drape.flat.cuts)[..., 0]
+    assert ends.min() == pytest.approx(0.0, abs=0.1)
+    assert ends.max() == pytest.approx(30.0, abs=5.0)  # to half a piece of the line

@@ -142,6 +142,11 @@ def test_what_is_cut_twice_counts_once_and_a_cut_along_the_rim_is_refused():
         plane_sheet().cut([[0, 20, 0], [0, 80, 0]])
 
 
+def test_no_line_at_all_is_refused():
+    with pytest.raises(SurfaceError, match="no line to cut along"):
+        plane_sheet().cut()
+
+
 def test_a_piece_that_cuts_part_off_is_warned_of_with_its_area():
     cut = plane_sheet().cut([[0, 33, 0], [100, 33, 0]])
     net = gd.drape(cut, (50.0, 70.0, 0.0), 0.0, 5.0)
