@@ -133,19 +133,22 @@ def test_tangents_of_a_parallel_sheet_are_those_of_its_points():
     )
 
 
-def test_the_closing_of_a_round_valley_is_the_ball_itself():
-    valley = Tool("groove", lambda x, y: tuple(a + b for a, b in zip(*_two(x, y), strict=True)), (60.0, 40.0))
-    radius = 60.0
-    z = closed(valley, radius)(np.array([[0.0, 0.0], [4.0, 10.0], [55.0, 0.0]]))[0][:, 2]
+@pytest.mark.parametrize("middle", [0.0, 0.7, 1.0], ids=lambda m: f"{m} mm beside a grid line")
+def test_the_closing_of_a_round_valley_is_the_ball_itself(middle):
+    def groove(x, y):
+        return tuple(a + b for a, b in zip(*_two(x - middle, y), strict=True))
+
+    valley, radius = Tool("groove", groove, (60.0, 40.0)), 60.0
+    z = closed(valley, radius)(np.array([[middle, 0.0], [middle + 4.0, 10.0], [middle + 55.0, 0.0]]))[0][:, 2]
     from scipy.optimize import minimize_scalar
 
-    wall = lambda t: valley.height(np.array([t]), np.array([0.0]))[0]  # noqa: E731
+    wall = lambda t: valley.height(np.array([middle + t]), np.array([0.0]))[0]  # noqa: E731
     lowest = -minimize_scalar(
         lambda t: -(wall(t) + np.sqrt(radius**2 - t * t)), bounds=(0.0, 59.0), method="bounded"
     ).fun
-    assert z[0] == pytest.approx(lowest - radius, abs=0.05)
-    assert z[1] == pytest.approx(lowest - np.sqrt(radius**2 - 16.0), abs=0.05)
-    assert z[2] == pytest.approx(wall(55.0), abs=0.05)
+    assert z[0] == pytest.approx(lowest - radius, abs=0.02)
+    assert z[1] == pytest.approx(lowest - np.sqrt(radius**2 - 16.0), abs=0.03)
+    assert z[2] == pytest.approx(wall(55.0), abs=1e-3)
 
 
 def _two(x, y):
