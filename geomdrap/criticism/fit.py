@@ -16,6 +16,7 @@ Predict = Callable[[np.ndarray], np.ndarray]
 STEPS = 12  # most accepted or refused steps
 SMALL = 0.05  # of chi-square: a step that promises or gains less ends the fit
 LEAST_STEP = 1e-3  # of a parameter's own step, in every parameter: less ends the fit, too
+UNSEEN = 0.05  # noises, over all values together: a parameter whose own step changes less stays where it is
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +60,10 @@ def fit(
     damping = 0.0
     fresh = slopes is None
     for _ in range(most):
-        step = _step(whiten(jacobian), whiten(filled), damping, values, low, high)
+        seen = whiten(jacobian)
+        # as a locking angle that no shear reaches: its slope is rounding, and would send it to the end of its range
+        moves = np.linalg.norm(seen, axis=0) * steps > UNSEEN
+        step = _step(seen, whiten(filled), damping, values, low, high, moves)
         foreseen = chi2 - _square(whiten(filled - jacobian @ step))
         if (np.abs(step) <= LEAST_STEP * steps).all() or foreseen < SMALL:
             break
@@ -113,13 +117,22 @@ def _square(vector: np.ndarray) -> float:
 
 
 def _step(
-    slopes: np.ndarray, residual: np.ndarray, damping: float, values: np.ndarray, low: np.ndarray, high: np.ndarray
+    slopes: np.ndarray,
+    residual: np.ndarray,
+    damping: float,
+    values: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    moves: np.ndarray,
 ) -> np.ndarray:
-    """Damped least-squares step; parameters that would leave their bounds go to them and the rest is solved again."""
+    """Damped least-squares step (p,) of the parameters that move (p,).
+
+    Those that would leave their bounds go to them and the rest is solved again.
+    """
     p = len(values)
     step = np.zeros(p)
-    free = np.ones(p, bool)
-    for _ in range(p):
+    free = moves.copy()
+    for _ in range(int(moves.sum())):
         left = residual - slopes[:, ~free] @ step[~free]
         a = slopes[:, free]
         scale = np.sqrt((a * a).sum(axis=0)) + 1e-300
