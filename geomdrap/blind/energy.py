@@ -18,6 +18,9 @@ LOCKED, SOFT = 0.5, 0.5
 how many degrees it sets in."""
 RELIEF, RELIEF_SIDES, KEPT = 1.0, 0.02, 300.0
 """Slip at the crossings: energies of missing the relieved shear, of uneven sides and of a yarn's total length."""
+RESTING = 0.1
+"""Friction on the tool where only a locking angle is given, by the square of the ply's size: a ply that locks moves
+only where it must. Without it nothing says which of all nets that do not lock it is."""
 HELD = 1e3  # weight of what is held: the heading of the first warp side
 
 Index = NDArray[np.intp]
@@ -134,6 +137,13 @@ def blocks(
     if recipe.bending:
         found.append(scaled(turns(p, net.bends, normal), np.sqrt(recipe.bending) / side))
     return found
+
+
+def resting(p: Array, laid: Array, side: float) -> Block:
+    """√RESTING times how far the nodes ``p`` (n, 3) have moved from where they were ``laid``, by the ply's size."""
+    factor = np.sqrt(RESTING / len(p)) / side
+    nodes = np.repeat(np.arange(len(p)), 3)[:, None]
+    return Block(factor * (p - laid).ravel(), nodes, factor * np.tile(np.eye(3), (len(p), 1))[:, None])
 
 
 def _locked(shear: Block, lock: float) -> Block:

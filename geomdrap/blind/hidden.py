@@ -19,7 +19,6 @@ SHEARED = ("dome", "saddle", "double-bump", "ridge", "pan")
 RELAXING = ("dome", "saddle", "double-bump", "ridge")
 MUCH_SHEARED = ("dome", "saddle", "double-bump")
 ASYMMETRIC_RATIO = 0.003  # shear stiffness of the nets whose stiffness depends on the sign of the shear
-LOCKED_RATIO = 1e-4  # so little that shear below the locking angle is all but free
 BENT_RATIO = 0.001  # with less, yarns stay straight by shearing the whole net to a slant
 
 Draw = Callable[[np.random.Generator, float, float], tuple[dict[str, float], dict[str, Any]]]
@@ -88,7 +87,7 @@ def _asymmetry(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[
 
 def _locking(rng: np.random.Generator, amount: float, shear: float) -> tuple[dict[str, float], dict[str, Any]]:
     lock = shear * (1.0 - min(amount * rng.uniform(0.15, 0.4), 0.6))
-    return {"angle": lock}, {"lock": lock, "stiffness": LOCKED_RATIO}
+    return {"angle": lock}, {"lock": lock}
 
 
 def _springback(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[str, float], dict[str, Any]]:

@@ -9,16 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from geomdrap.blind.energy import HELD, KEPT, Block, Topology, blocks, sines, strains, topology
+from geomdrap.blind.energy import HELD, KEPT, Block, Topology, blocks, resting, sines, strains, topology
 from geomdrap.blind.recipe import Recipe
 from geomdrap.blind.sheet import Sheet, normals
 from geomdrap.blind.terms import Array
 from geomdrap.errors import GeomdrapError
 
-STEPS = 60
+STEPS = 100
 SMALL_STEP = 1e-6  # of a side
-SETTLED, DAMPED = 1e-6, 1e-2  # the least share of the energy worth another step, where the damping is low
-SETTLED_LOCKED = 1e-3  # locked nets creep among states of nearly the same energy; friction holds real ones there
+SETTLED, SETTLED_LOCKED = 1e-6, 1e-4  # of the energy: the least share worth another step
+DAMPED = 1e-2  # damping above which a small gain says nothing
 
 
 def relaxed(sheet: Sheet, plan: Array, recipe: Recipe, side: float) -> Array:
@@ -48,6 +48,7 @@ class _Problem:
         strain = np.asarray(recipe.extension)[net.along]
         self.rest = side * (1.0 + strain)
         self.aim = _relieved(sines(points, net.corners, net.sign).value, recipe)
+        self.laid = points
         self.first = self._first_warp_side()
         chord = points[self.first] - points[seed]
         left = np.cross(np.cross(along_x[seed], along_y[seed]), chord)
@@ -84,7 +85,9 @@ class _Problem:
         return p, normals(self.sheet, xy) if self.recipe.bending else p, px, py
 
     def _blocks(self, p: Array, normal: Array) -> list[Block]:
-        return [*blocks(p, normal, self.net, self.rest, self.side, self.recipe, self.aim), self._held(p)]
+        found = [*blocks(p, normal, self.net, self.rest, self.side, self.recipe, self.aim), self._held(p)]
+        alone = self.recipe.lock and not self.recipe.stiffness
+        return [*found, resting(p, self.laid, self.side)] if alone else found
 
     def _matrix(self, block: Block, px: Array, py: Array) -> Any:
         """The block's derivatives by the plan points, (m, 2n)."""
@@ -131,7 +134,7 @@ def _minimum(problem: _Problem, xy: Array) -> Array:
     """Levenberg-Marquardt from the plan points ``xy`` (n, 2)."""
     energy = problem.energy(xy)
     damping = 1e-6
-    enough = SETTLED_LOCKED if problem.recipe.lock else SETTLED
+    enough = SETTLED_LOCKED if problem.recipe.lock else SETTLED  # where it locks, energy falls on without a move
     terms = problem.linear(xy)
     for _ in range(STEPS):
         step = _step(*terms, damping, problem.seed)
