@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.errors import DrapeError
+from geomdrap.fishnet.dissection import dissect
 from geomdrap.fishnet.relax_energy import Law, energy
-from geomdrap.fishnet.relax_equations import Equations, equations_at, half_width, newton_step
+from geomdrap.fishnet.relax_equations import Equations, equations_at, newton_step
 from geomdrap.fishnet.relax_surface import Footing, smooth_normals, stand
 
 if TYPE_CHECKING:
@@ -42,9 +43,9 @@ ROUNDS = 80
 class Problem:
     """What is held fixed while a net relaxes; arrays as in ``relax_energy``.
 
-    ``x0`` (nu, nv, 3) is the geometric net, ``nodes`` the places (i, j) of the n that move, counted along the shorter
-    side of the net, ``number`` (nu, nv) of these, -1 for others, and ``width`` the ``half_width`` of the equations; ``fixed`` node and ``guided`` node, which moves only
-    in the plane through the seed across ``side``, and where they are, ``held`` (2, 3) mm.
+    ``x0`` (nu, nv, 3) is the geometric net, ``nodes`` the places (i, j) of the n that move, ``number`` (nu, nv) of
+    these, -1 for others; ``fixed`` node and ``guided`` node, which moves only in the plane through the seed across
+    ``side``, and where they are, ``held`` (2, 3) mm.
     """
 
     surface: Surface
@@ -57,7 +58,6 @@ class Problem:
     law: Law
     nodes: tuple[np.ndarray, np.ndarray]
     number: np.ndarray
-    width: int
     fixed: tuple[int, int]
     guided: tuple[int, int]
     held: np.ndarray
@@ -107,9 +107,10 @@ def pose(net: Net, law: Law) -> Problem:
     beside = [k for k in (i + 1, i - 1) if 0 <= k < len(net.u) and warp[min(i, k), j]]
     if not beside:
         raise DrapeError("the seed has no cell beside it from which a net could relax; move it away from the rim")
-    nodes = np.nonzero(moves) if moves.shape[0] >= moves.shape[1] else np.nonzero(moves.T)[::-1]
+    i_moves, j_moves = np.nonzero(moves)
+    nodes = i_moves, j_moves
     number = np.full(moves.shape, -1)
-    number[nodes] = np.arange(len(nodes[0]))
+    number[nodes] = np.arange(len(i_moves))
     surface = net.surface.lidded
     normals = smooth_normals(surface.triangles, surface.normals, surface.corner_angles, len(surface.points))
     x = np.full(lattice.shape, np.nan)
@@ -125,7 +126,6 @@ def pose(net: Net, law: Law) -> Problem:
         law=law,
         nodes=nodes,
         number=number,
-        width=half_width(number),
         fixed=(i, j),
         guided=(beside[0], j),
         held=lattice[[i, beside[0]], j],
@@ -142,6 +142,7 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
     footing = stand(problem.surface, problem.corner_normals, x[problem.nodes])
     x[problem.nodes] = footing.lifted
     now, damping, stuck = _energy(problem, x), 0.0, 0
+    fronts = dissect(problem.number, len(footing.face), problem.law.yarn > 0.0)
     full = False  # far from the end second derivatives need not be positive
     best = Relaxed(x, footing, now, math.inf, 0)
     for n in range(ROUNDS):
@@ -151,9 +152,8 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
             best = Relaxed(x, footing, now, equations.unrest, n)
         if best.unrest < BALANCED or (best.unrest < GOOD_ENOUGH and stuck > PATIENCE):
             break
-        step = newton_step(problem, equations, damping)
-        downhill = step is not None and equations.gradient @ step < 0.0
-        moved = _searched(problem, x, footing, equations, step, now) if downhill else None
+        step = newton_step(problem, fronts, equations, damping)
+        moved = _searched(problem, x, footing, equations, step, now) if equations.gradient @ step < 0.0 else None
         if moved is None and damping > MOST_DAMPING:
             break
         if moved is None:

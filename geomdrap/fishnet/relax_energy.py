@@ -17,9 +17,6 @@ import numpy as np
 from geomdrap.geodesic.compiled import inlined, kernel, tight
 
 
-AFTER = (0, 0), (0, 1), (1, -1), (1, 0), (1, 1)  # of a node: what it has second derivatives with
-
-
 class Law(NamedTuple):
     """The factors of the energy: see the module."""
 
@@ -278,9 +275,9 @@ def derivatives(
     """Gradient (nu, nv, 3), second derivative (nu, nv, 5, 2, 2) and size of the forces (nu, nv).
 
     The second derivative is that along the tangent vectors ``basis`` (nu, nv, 3, 2) of a node and of itself and the
-    four of its neighbours that come ``AFTER`` it, without the part of the surface's curvature and that of whole
-    yarns; where not ``full`` it is made positive by leaving out what may be negative. The size is the sum of the
-    forces at a node without regard to their directions.
+    four of its neighbours that come ``AFTER`` it (``dissection``), without the part of the surface's curvature and
+    that of whole yarns; where not ``full`` it is made positive by leaving out what may be negative. The size is the
+    sum of the forces at a node without regard to their directions.
     """
     nu, nv = x.shape[0], x.shape[1]
     g, h, size = np.zeros((nu, nv, 3)), np.zeros((nu, nv, 5, 2, 2)), np.zeros((nu, nv))

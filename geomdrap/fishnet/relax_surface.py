@@ -87,8 +87,8 @@ def stand(surface: Surface, corner_normals: np.ndarray, points: np.ndarray, last
     else:
         mesh = (surface.points, surface.triangles, surface.neighbours, surface.neighbour_edge)
         point, face = nearest_from(*mesh, points, last.face)
-    mesh = (surface.points, surface.triangles, surface.neighbours, surface.normals, surface.areas)
-    return Footing(point, *footing(*mesh, corner_normals, points, point, face))
+    part = (surface.points, surface.triangles, surface.neighbours, surface.normals, surface.areas)
+    return Footing(point, *footing(*part, corner_normals, points, point, face))
 
 
 @kernel

@@ -9,8 +9,9 @@ from scipy.optimize import minimize
 from shared import drape
 
 import geomdrap as gd
+from geomdrap.fishnet.dissection import AFTER
 from geomdrap.fishnet.relax import law_of, pose, relax
-from geomdrap.fishnet.relax_energy import AFTER, Law, derivatives, energy
+from geomdrap.fishnet.relax_energy import Law, derivatives, energy
 from geomdrap.surface import shapes
 
 RADIUS = 80.0
