@@ -1,8 +1,7 @@
 """Solution of the symmetric systems of a net, front by front.
 
 Each front is a small dense matrix: what its own unknowns have with one another and with later ones, and what the two
-fronts before it have passed on. Its own unknowns are eliminated without pivoting (L·D·Lᵀ), the rest is passed on. By
-the signs of D the matrix is seen to be positive definite or not.
+fronts before it have passed on. Its own unknowns are eliminated without pivoting (L·D·Lᵀ), the rest is passed on.
 
 Source: I. S. Duff and J. K. Reid, The multifrontal solution of indefinite sparse symmetric linear equations, ACM
 Trans. Math. Software 9 (1983).
@@ -17,18 +16,17 @@ from geomdrap.geodesic.compiled import kernel, tight
 
 
 @tight
-def eliminate(a: np.ndarray, first: int) -> int:
-    """Eliminate the ``first`` unknowns of the upper half of a (s, s) in place; returns how many pivots are negative.
+def eliminate(a: np.ndarray, first: int) -> None:
+    """Eliminate the ``first`` unknowns of the upper half of a (s, s) in place.
 
     Their rows are left as they were when their turn came: D·Lᵀ. Four at a time, from two rows at once, so that what
     is left is touched less often; columns are unsigned, without which the loops are not vectorised. What is below the
     diagonal is not used, and spoilt.
     """
-    s, negative = a.shape[0], 0
+    s = a.shape[0]
     for k in range(0, first, 4):
         end = min(k + 4, first)
         for p in range(k, end):
-            negative += a[p, p] < 0.0
             for q in range(p + 1, end):
                 subtract(a, p, q)
         if end < k + 4:
@@ -47,7 +45,6 @@ def eliminate(a: np.ndarray, first: int) -> int:
         if (s - end) % 2 == 1:
             for p in range(k, end):
                 subtract(a, p, s - 1)
-    return negative
 
 
 @tight
@@ -144,12 +141,12 @@ def solve(
     slopes: np.ndarray,
     soft: float,
     right: np.ndarray,
-) -> tuple[np.ndarray, bool]:
-    """Solution (2n,) for ``right`` (2n,), and whether the matrix is positive definite.
+) -> np.ndarray:
+    """Solution (2n,) for ``right`` (2n,).
 
     ``blocks`` (n, 5, 2, 2) of each node with those ``AFTER`` it; ``slopes`` (2, 2n) of the unknowns with the tensions
     of their warp and weft yarns, whose diagonal is -``soft``: with soft = 1/κ the matrix is that with κ·slope·slopeᵀ
-    added, and has one negative pivot a yarn. With soft = 0 there are no yarns. Not finite where a pivot vanishes.
+    added. With soft = 0 there are no yarns. Not finite where a pivot vanishes.
     """
     m = len(fronts.own)
     held, passed = np.zeros(m + 1, np.int64), np.zeros(m + 1, np.int64)
@@ -159,7 +156,6 @@ def solve(
     rows, left = np.empty(held[m]), np.empty(passed[m])
     place, x = np.zeros(len(fronts.home), np.int64), np.zeros(len(fronts.home))
     x[: len(right)] = right
-    negative = 0
     for f in range(m):
         first, s, e = fronts.start[f], fronts.start[f + 1] - fronts.start[f], fronts.own[f]
         for t in range(s):
@@ -169,7 +165,7 @@ def solve(
             if g >= 0:
                 add_passed(a, fronts, place, g, left, passed[g])
         add_own(a, f, fronts, place, nodes, number, blocks, slopes, soft)
-        negative += eliminate(a, e)
+        eliminate(a, e)
         reduce_right(a, fronts, f, x)
         for t in range(e):
             rows[held[f] + t * s : held[f] + (t + 1) * s] = a[t]
@@ -177,4 +173,4 @@ def solve(
             left[passed[f] + t * (s - e) : passed[f] + (t + 1) * (s - e)] = a[e + t, e:]
     for f in range(m - 1, -1, -1):
         substitute_back(fronts, f, rows, held[f], x)
-    return x[: len(right)], negative == len(x) - len(right)
+    return x[: len(right)]

@@ -115,6 +115,7 @@ def newton_step(problem: Problem, fronts: Fronts, equations: Equations, damping:
     stiffness = np.einsum("naa->na", blocks[:, 0])  # a view
     stiffness += (damping + ROUNDED_OFF) * max(float(stiffness.max()), 1e-300)
     soft = 0.5 / problem.law.yarn if problem.law.yarn > 0.0 else 0.0
-    step: np.ndarray
-    step, _ = solve(fronts, problem.nodes, problem.number, blocks, equations.slopes, soft, -equations.gradient)
+    step: np.ndarray = solve(
+        fronts, problem.nodes, problem.number, blocks, equations.slopes, soft, -equations.gradient
+    )
     return step

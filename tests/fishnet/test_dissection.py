@@ -33,13 +33,14 @@ def dense(nodes, number, blocks):
 
 @pytest.mark.parametrize("shape", [(1, 2), (4, 4), (3, 40), (17, 5), (13, 14)], ids=str)
 @pytest.mark.parametrize("missing", [0.0, 0.4])
-def test_the_solution_is_that_of_the_dense_matrix(shape, missing):
+@pytest.mark.parametrize("shift", [0.0, -19.0], ids=["positive", "indefinite"])
+def test_the_solution_is_that_of_the_dense_matrix(shape, missing, shift):
     nodes, number, blocks, rng = net(shape, missing, 1)
+    blocks[:, 0] += shift * np.eye(2)
     right = rng.normal(size=2 * len(blocks))
     none = np.zeros((2, len(right)))
-    found, definite = solve(dissect(number, len(blocks), False), nodes, number, blocks, none, 0.0, right)
-    assert definite
-    np.testing.assert_allclose(dense(nodes, number, blocks) @ found, right, atol=1e-12)
+    found = solve(dissect(number, len(blocks), False), nodes, number, blocks, none, 0.0, right)
+    np.testing.assert_allclose(dense(nodes, number, blocks) @ found, right, atol=1e-12 if shift == 0.0 else 1e-9)
 
 
 @pytest.mark.parametrize("shape", [(5, 4), (3, 30), (12, 13)], ids=str)
@@ -53,20 +54,8 @@ def test_the_stiffness_of_whole_yarns_is_added(shape, stiffness):
         yarns[np.repeat(yarn, 2), np.arange(2 * n)] = slopes[family]
     matrix = dense(nodes, number, blocks) + stiffness * yarns.T @ yarns
     fronts = dissect(number, n, True)
-    found, definite = solve(fronts, nodes, number, blocks, slopes, 1.0 / stiffness, right)
-    assert definite
+    found = solve(fronts, nodes, number, blocks, slopes, 1.0 / stiffness, right)
     np.testing.assert_allclose(found, np.linalg.solve(matrix, right), rtol=1e-8, atol=1e-10)
-
-
-@pytest.mark.parametrize("shift", [-16.0, -8.0, 0.0])
-def test_it_says_whether_the_matrix_with_the_yarns_is_positive_definite(shift):
-    nodes, number, blocks, rng = net((8, 9), 0.1, 3)
-    n = len(blocks)
-    blocks[:, 0] += shift * np.eye(2)
-    slopes = np.zeros((2, 2 * n))
-    for soft, yarns in ((0.0, False), (0.1, True)):
-        _, definite = solve(dissect(number, n, yarns), nodes, number, blocks, slopes, soft, np.ones(2 * n))
-        assert definite == bool((np.linalg.eigvalsh(dense(nodes, number, blocks)) > 0.0).all())
 
 
 def test_every_unknown_is_eliminated_once_and_meets_only_later_ones():
