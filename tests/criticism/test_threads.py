@@ -1,10 +1,13 @@
 """Threads of linear algebra within a diagnosis."""
 
+import importlib
+
 import scipy.linalg  # noqa: F401
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from geomdrap.criticism import diagnose as module
 from geomdrap.criticism.threads import one_blas_thread
+
+module = importlib.import_module("geomdrap.criticism.diagnose")
 
 
 def blas_threads():
