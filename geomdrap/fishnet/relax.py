@@ -153,7 +153,7 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
         if best.unrest < BALANCED or (best.unrest < GOOD_ENOUGH and stuck > PATIENCE):
             break
         step = newton_step(problem, fronts, equations, damping)
-        downhill = float((equations.gradient * step).sum()) < 0.0  # no BLAS, whose threads would cost more than all else
+        downhill = float((equations.gradient * step).sum()) < 0.0  # a BLAS product would wake threads that only spin
         moved = _searched(problem, x, footing, equations, step, now) if downhill else None
         if moved is None and damping > MOST_DAMPING:
             break
