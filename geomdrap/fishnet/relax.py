@@ -36,6 +36,7 @@ ROUNDING = 1e-12
 UNEVEN = 1e-6  # of the energy: how much of it facets leave to chance
 CLOSE = 0.1  # unrest below which second derivatives are taken in full
 PATIENCE = 3  # rounds in which the unrest may fail to halve near the end
+IDLE = 8  # rounds in which the unrest may fail to halve and the energy to fall by more than facets leave to chance
 ROUNDS = 80
 
 
@@ -144,13 +145,15 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
     now, damping, stuck = _energy(problem, x), 0.0, 0
     fronts = dissect(problem.number, len(footing.face), problem.law.yarn > 0.0)
     full = False  # far from the end second derivatives need not be positive
-    best = Relaxed(x, footing, now, math.inf, 0)
+    best = mark = Relaxed(x, footing, now, math.inf, 0)
     for n in range(ROUNDS):
         equations = equations_at(problem, x, footing, full)
+        if equations.unrest < 0.5 * mark.unrest or now < mark.energy * (1.0 - UNEVEN):
+            mark = Relaxed(x, footing, now, equations.unrest, n)
         stuck = stuck + 1 if equations.unrest > 0.5 * best.unrest else 0
         if equations.unrest < best.unrest or now < best.energy * (1.0 - UNEVEN):
             best = Relaxed(x, footing, now, equations.unrest, n)
-        if best.unrest < BALANCED or (best.unrest < GOOD_ENOUGH and stuck > PATIENCE):
+        if best.unrest < BALANCED or (best.unrest < GOOD_ENOUGH and stuck > PATIENCE) or n - mark.rounds > IDLE:
             break
         step = newton_step(problem, fronts, equations, damping)
         downhill = float((equations.gradient * step).sum()) < 0.0  # a BLAS product would wake threads that only spin
@@ -175,8 +178,8 @@ def _searched(
 ) -> tuple[np.ndarray, Footing, float, bool] | None:
     """Nodes after the longest of a few shares of the step that lowers the energy, and whether it is all of it.
 
-    Facets leave the energy a little uneven: near the end, where its slope is followed to where it vanishes, it may
-    rise by a share of ``UNEVEN``.
+    Facets leave the energy a little uneven: near the end, or where the step promises less than that, its slope is
+    followed to where it vanishes, and it may rise by a share of ``UNEVEN``.
     """
     way = (equations.bases * step.reshape(-1, 1, 2)).sum(axis=2)
     longest = float(np.linalg.norm(way, axis=1).max())
@@ -184,12 +187,13 @@ def _searched(
         return None
     share = min(1.0, LONGEST_STEP * float(problem.rest_u.max()) / max(longest, 1e-300))
     whole = share == 1.0
+    gain = -0.5 * float((equations.gradient * step).sum())
     for _ in range(4):
         moved = stand(problem.surface, problem.corner_normals, footing.point + share * way, footing)
         y = x.copy()
         y[problem.nodes] = moved.lifted
         then = _energy(problem, y)
-        near = whole and equations.unrest < GOOD_ENOUGH
+        near = whole and (equations.unrest < GOOD_ENOUGH or gain < UNEVEN * now)
         if then <= now * (1.0 + (UNEVEN if near else ROUNDING)):
             return y, moved, then, whole
         share, whole = 0.25 * share, False

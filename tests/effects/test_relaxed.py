@@ -195,6 +195,17 @@ def test_shear_stops_near_the_locking_angle_at_the_cost_of_yarn_length():
     assert np.nanmax(abs(locked.sides[0] / 8.0 - 1.0)) > 5e-3
 
 
+def test_the_unevenness_of_facets_keeps_no_net_from_coming_to_rest():
+    net = drape(
+        shapes.sphere_cap(100.0, 60.0, 2.6),
+        "crossing-slip:share=0.3,onset=5",
+        origin=(6.0, -4.0, 99.7),
+        angle=20.0,
+        pitch=float(np.sqrt(np.pi / 900.0) * 100.0),
+    )
+    assert not net.warnings
+
+
 def test_relaxation_works_together_with_extension_and_placement():
     surface = shapes.sphere_cap(RADIUS, 60.0, 3.0)
     effects = ("shear-stiffness:ratio=0.003", "yarn-extension:strain_warp=0.02", "placement:du=3,dangle=2")
