@@ -197,11 +197,11 @@ def test_shear_stops_near_the_locking_angle_at_the_cost_of_yarn_length():
 
 def test_the_unevenness_of_facets_keeps_no_net_from_coming_to_rest():
     net = drape(
-        shapes.sphere_cap(100.0, 60.0, 2.6),
+        shapes.sphere_cap(100.0, 60.0, 1.8),
         "crossing-slip:share=0.3,onset=5",
         origin=(6.0, -4.0, 99.7),
         angle=20.0,
-        pitch=float(np.sqrt(np.pi / 900.0) * 100.0),
+        pitch=float(np.sqrt(2e4 * np.pi * (1.0 - np.cos(np.pi / 3.0)) / 5000.0)),
     )
     assert not net.warnings
 
