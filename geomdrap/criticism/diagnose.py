@@ -22,6 +22,7 @@ from geomdrap.criticism.plateau import Plateau, plateau
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round, judge_of, try_effects
 from geomdrap.criticism.table import tried_of, values_of
+from geomdrap.criticism.threads import one_blas_thread
 from geomdrap.criticism.words import hints_for
 from geomdrap.effects import available, make
 from geomdrap.measurement.match import match
@@ -68,10 +69,11 @@ def diagnose(
     """
     progress(0.0, "matching")
     layup = Layup(origin, angle, reference, pitch, project)
-    experiment, notes = prepare(surface, measurement, layup, sigma_xyz, sigma_shear, sigma_direction)
     names = [name for name in (available() if effects is None else effects) if name != "placement"]
-    rounds = search(experiment, names, progress)
-    return conclude(experiment, rounds, notes)
+    with one_blas_thread():
+        experiment, notes = prepare(surface, measurement, layup, sigma_xyz, sigma_shear, sigma_direction)
+        rounds = search(experiment, names, progress)
+        return conclude(experiment, rounds, notes)
 
 
 def search(experiment: Experiment, names: Sequence[str], progress: Progress) -> list[Round]:

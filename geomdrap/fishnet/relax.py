@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.errors import DrapeError
-from geomdrap.fishnet.relax_energy import Law, derivatives, energy
-from geomdrap.fishnet.relax_surface import Footing, smooth_normals, stand, tangents
+from geomdrap.fishnet.dissection import dissect
+from geomdrap.fishnet.relax_energy import Law, energy
+from geomdrap.fishnet.relax_equations import Equations, equations_at, newton_step
+from geomdrap.fishnet.relax_surface import Footing, smooth_normals, stand
 
 if TYPE_CHECKING:
-    from scipy.sparse import csc_array
-
     from geomdrap.fishnet.fabric import Fabric
     from geomdrap.fishnet.net import Net
     from geomdrap.surface import Surface
@@ -36,6 +36,7 @@ ROUNDING = 1e-12
 UNEVEN = 1e-6  # of the energy: how much of it facets leave to chance
 CLOSE = 0.1  # unrest below which second derivatives are taken in full
 PATIENCE = 3  # rounds in which the unrest may fail to halve near the end
+IDLE = 8  # rounds in which the unrest may fail to halve and the energy to fall by more than facets leave to chance
 ROUNDS = 80
 
 
@@ -43,9 +44,9 @@ ROUNDS = 80
 class Problem:
     """What is held fixed while a net relaxes; arrays as in ``relax_energy``.
 
-    ``x0`` (nu, nv, 3) is the geometric net, ``number`` (nu, nv) of the nodes that move, -1 for others; ``fixed`` node
-    and ``guided`` node, which moves only in the plane through the seed across ``side``, and where they are, ``held``
-    (2, 3) mm.
+    ``x0`` (nu, nv, 3) is the geometric net, ``nodes`` the places (i, j) of the n that move, ``number`` (nu, nv) of
+    these, -1 for others; ``fixed`` node and ``guided`` node, which moves only in the plane through the seed across
+    ``side``, and where they are, ``held`` (2, 3) mm.
     """
 
     surface: Surface
@@ -56,6 +57,7 @@ class Problem:
     rest_u: np.ndarray
     rest_v: np.ndarray
     law: Law
+    nodes: tuple[np.ndarray, np.ndarray]
     number: np.ndarray
     fixed: tuple[int, int]
     guided: tuple[int, int]
@@ -106,12 +108,14 @@ def pose(net: Net, law: Law) -> Problem:
     beside = [k for k in (i + 1, i - 1) if 0 <= k < len(net.u) and warp[min(i, k), j]]
     if not beside:
         raise DrapeError("the seed has no cell beside it from which a net could relax; move it away from the rim")
+    i_moves, j_moves = np.nonzero(moves)
+    nodes = i_moves, j_moves
     number = np.full(moves.shape, -1)
-    number[moves] = np.arange(moves.sum())
+    number[nodes] = np.arange(len(i_moves))
     surface = net.surface.lidded
     normals = smooth_normals(surface.triangles, surface.normals, surface.corner_angles, len(surface.points))
     x = np.full(lattice.shape, np.nan)
-    x[moves] = stand(surface, normals, lattice[moves]).lifted
+    x[nodes] = stand(surface, normals, lattice[nodes]).lifted
     return Problem(
         surface=surface,
         corner_normals=normals,
@@ -121,6 +125,7 @@ def pose(net: Net, law: Law) -> Problem:
         rest_u=np.where(warp, np.linalg.norm(np.diff(x, axis=0), axis=2), 0.0),
         rest_v=np.where(weft, np.linalg.norm(np.diff(x, axis=1), axis=2), 0.0),
         law=law,
+        nodes=nodes,
         number=number,
         fixed=(i, j),
         guided=(beside[0], j),
@@ -135,20 +140,24 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
     x = np.where(moves[..., None], start, 0.0)
     for node, place in zip((problem.fixed, problem.guided), problem.held, strict=True):
         x[node] = place
-    footing = stand(problem.surface, problem.corner_normals, x[moves])
-    x[moves] = footing.lifted
+    footing = stand(problem.surface, problem.corner_normals, x[problem.nodes])
+    x[problem.nodes] = footing.lifted
     now, damping, stuck = _energy(problem, x), 0.0, 0
+    fronts = dissect(problem.number, len(footing.face), problem.law.yarn > 0.0)
     full = False  # far from the end second derivatives need not be positive
-    best = Relaxed(x, footing, now, math.inf, 0)
+    best = mark = Relaxed(x, footing, now, math.inf, 0)
     for n in range(ROUNDS):
-        equations = _equations(problem, x, footing, full)
+        equations = equations_at(problem, x, footing, full)
+        if equations.unrest < 0.5 * mark.unrest or now < mark.energy * (1.0 - UNEVEN):
+            mark = Relaxed(x, footing, now, equations.unrest, n)
         stuck = stuck + 1 if equations.unrest > 0.5 * best.unrest else 0
         if equations.unrest < best.unrest or now < best.energy * (1.0 - UNEVEN):
             best = Relaxed(x, footing, now, equations.unrest, n)
-        if best.unrest < BALANCED or (best.unrest < GOOD_ENOUGH and stuck > PATIENCE):
+        if best.unrest < BALANCED or (best.unrest < GOOD_ENOUGH and stuck > PATIENCE) or n - mark.rounds > IDLE:
             break
-        step = _solve(problem, equations, damping)
-        moved = _searched(problem, x, footing, equations, step, now) if equations.gradient @ step < 0.0 else None
+        step = newton_step(problem, fronts, equations, damping)
+        downhill = float((equations.gradient * step).sum()) < 0.0  # a BLAS product would wake threads that only spin
+        moved = _searched(problem, x, footing, equations, step, now) if downhill else None
         if moved is None and damping > MOST_DAMPING:
             break
         if moved is None:
@@ -164,137 +173,27 @@ def _energy(problem: Problem, x: np.ndarray) -> float:
     return float(energy(x, problem.valid, problem.target, problem.rest_u, problem.rest_v, problem.law))
 
 
-@dataclass(frozen=True, eq=False)
-class Equations:
-    """Newton's equations.
-
-    ``gradient`` (2n,) and ``matrix`` (2n, 2n) along the tangent vectors ``bases`` (n, 3, 2); ``unrest`` as in
-    ``Relaxed``; ``yarns`` (k, 2n) changes of the strain sums of k yarns that keep their length.
-    """
-
-    gradient: np.ndarray
-    matrix: csc_array
-    bases: np.ndarray
-    unrest: float
-    yarns: csc_array | None
-
-
-def _equations(problem: Problem, x: np.ndarray, footing: Footing, full: bool) -> Equations:
-    """Newton's equations at nodes x (nu, nv, 3)."""
-    from scipy.sparse import csc_array
-
-    moves = problem.number >= 0
-    bases = _bases(problem, footing)
-    basis = np.zeros((*moves.shape, 3, 2))
-    basis[moves] = bases
-    g, h, size = derivatives(
-        x, basis, problem.valid, problem.target, problem.rest_u, problem.rest_v, problem.law, full
-    )
-    gradient = np.einsum("nxa,nx->na", bases, g[moves]).ravel()
-    bending = np.einsum("nxa,nxy,nyb->nab", bases, footing.turning, bases)
-    if full:
-        pressure = (g[moves] * footing.normal).sum(axis=1)
-        h[moves, 1, 1] -= pressure[:, None, None] * 0.5 * (bending + bending.swapaxes(1, 2))
-    rows, columns, values = _entries(problem.number, h)
-    for node, first in ((problem.fixed, 0), (problem.guided, 1)):
-        at = 2 * problem.number[node] + np.arange(first, 2)
-        rows, columns, values = np.append(rows, at), np.append(columns, at), np.append(values, np.full(len(at), 1.0))
-    n = 2 * len(bases)
-    left = float(np.linalg.norm(gradient.reshape(-1, 2), axis=1).max())
-    matrix = csc_array((values, (rows, columns)), shape=(n, n))
-    yarns = _yarn_lengths(problem, x, bases) if problem.law.yarn > 0.0 else None
-    return Equations(gradient, matrix, bases, left / max(float(size.max()), 1e-300), yarns)
-
-
-def _yarn_lengths(problem: Problem, x: np.ndarray, bases: np.ndarray) -> csc_array:
-    """How the sum of strains of each warp and weft yarn (nv + nu, 2n) changes as the nodes move."""
-    from scipy.sparse import csc_array
-
-    moves = problem.number >= 0
-    i, j = np.nonzero(moves)
-    rows, values = [], []
-    for axis, rest, yarn in ((0, problem.rest_u, j), (1, problem.rest_v, len(moves[0]) + i)):
-        piece = np.diff(x, axis=axis)
-        length = np.linalg.norm(piece, axis=2)
-        slope = np.where(rest > 0.0, 1.0 / np.where(rest > 0.0, rest * length, 1.0), 0.0)[..., None] * piece
-        pull = np.zeros(x.shape)
-        pull[(np.s_[1:], np.s_[:, 1:])[axis]] += slope
-        pull[(np.s_[:-1], np.s_[:, :-1])[axis]] -= slope
-        rows.append(np.repeat(yarn, 2))
-        values.append(np.einsum("nxa,nx->na", bases, pull[moves]).ravel())
-    columns = np.tile(np.arange(2 * len(bases)), 2)
-    return csc_array(
-        (np.concatenate(values), (np.concatenate(rows), columns)), shape=(sum(moves.shape), 2 * len(bases))
-    )
-
-
-def _bases(problem: Problem, footing: Footing) -> np.ndarray:
-    """Tangent vectors (n, 3, 2) along which nodes may move: none for the seed, one for the node beside it."""
-    toward = np.eye(3)[np.abs(footing.normal).argmin(axis=1)]
-    guided = problem.number[problem.guided]
-    toward[guided] = np.cross(problem.side, footing.normal[guided])
-    bases = tangents(footing.normal, toward)
-    bases[guided, :, 1] = 0.0
-    bases[problem.number[problem.fixed]] = 0.0
-    return bases
-
-
-def _entries(number: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Rows, columns and values of the sparse second derivative."""
-    here = np.argwhere(number >= 0)
-    rows, columns, values = [], [], []
-    for di in (-1, 0, 1):
-        for dj in (-1, 0, 1):
-            k, m = here[:, 0] + di, here[:, 1] + dj
-            ok = (k >= 0) & (m >= 0) & (k < number.shape[0]) & (m < number.shape[1])
-            ok[ok] = number[k[ok], m[ok]] >= 0
-            i, j = here[ok].T
-            a, b = np.divmod(np.arange(4), 2)
-            rows.append((2 * number[i, j][:, None] + a).ravel())
-            columns.append((2 * number[k[ok], m[ok]][:, None] + b).ravel())
-            values.append(h[i, j, di + 1, dj + 1].reshape(-1))
-    return np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
-
-
-def _solve(problem: Problem, equations: Equations, damping: float) -> np.ndarray:
-    """Damped Newton step (2n,); the stiffness of whole yarns stands in rows of its own, since it is dense."""
-    from scipy.sparse import block_array, diags_array
-    from scipy.sparse.linalg import splu
-
-    matrix, gradient, yarns = equations.matrix, equations.gradient, equations.yarns
-    shift = (damping + 1e-13) * max(float(matrix.diagonal().max()), 1e-300)
-    system = (matrix + diags_array(np.full(len(gradient), shift))).tocsc()
-    if yarns is not None:
-        soft = diags_array(np.full(yarns.shape[0], -0.5 / problem.law.yarn))
-        system = block_array([[system, yarns.T], [yarns, soft]], format="csc")
-    factors = splu(system, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    right = np.zeros(system.shape[0])
-    right[: len(gradient)] = -gradient
-    step: np.ndarray = factors.solve(right)[: len(gradient)]
-    return step
-
-
 def _searched(
     problem: Problem, x: np.ndarray, footing: Footing, equations: Equations, step: np.ndarray, now: float
 ) -> tuple[np.ndarray, Footing, float, bool] | None:
     """Nodes after the longest of a few shares of the step that lowers the energy, and whether it is all of it.
 
-    Facets leave the energy a little uneven: near the end, where its slope is followed to where it vanishes, it may
-    rise by a share of ``UNEVEN``.
+    Facets leave the energy a little uneven: near the end, or where the step promises less than that, its slope is
+    followed to where it vanishes, and it may rise by a share of ``UNEVEN``.
     """
-    moves = problem.number >= 0
-    way = np.einsum("nxa,na->nx", equations.bases, step.reshape(-1, 2))
+    way = (equations.bases * step.reshape(-1, 1, 2)).sum(axis=2)
     longest = float(np.linalg.norm(way, axis=1).max())
     if not math.isfinite(longest):
         return None
     share = min(1.0, LONGEST_STEP * float(problem.rest_u.max()) / max(longest, 1e-300))
     whole = share == 1.0
+    gain = -0.5 * float((equations.gradient * step).sum())
     for _ in range(4):
         moved = stand(problem.surface, problem.corner_normals, footing.point + share * way, footing)
         y = x.copy()
-        y[moves] = moved.lifted
+        y[problem.nodes] = moved.lifted
         then = _energy(problem, y)
-        near = whole and equations.unrest < GOOD_ENOUGH
+        near = whole and (equations.unrest < GOOD_ENOUGH or gain < UNEVEN * now)
         if then <= now * (1.0 + (UNEVEN if near else ROUNDING)):
             return y, moved, then, whole
         share, whole = 0.25 * share, False

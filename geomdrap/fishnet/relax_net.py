@@ -29,14 +29,14 @@ def relaxed(net: Net, start: np.ndarray | None = None) -> Net:
 
 def as_net(net: Net, problem: Problem, found: Relaxed) -> Net:
     """The net with its nodes where they came to rest; those beyond the rim, or without a cell, are off the part."""
-    moves = problem.number >= 0
-    off = np.ones(moves.shape, bool)
-    off[moves] = found.footing.outside > ON_RIM * net.pitch
+    nodes = problem.nodes
+    off = np.ones(problem.number.shape, bool)
+    off[nodes] = found.footing.outside > ON_RIM * net.pitch
     lattice = np.full(found.x.shape, np.nan)
-    lattice[moves] = found.footing.point
+    lattice[nodes] = found.footing.point
     lattice[off] = np.nan
-    face = np.full(moves.shape, -1)
-    face[moves] = found.footing.face
+    face = np.full(off.shape, -1)
+    face[nodes] = found.footing.face
     face[off | (face >= len(net.surface.triangles))] = -1
     face[~np.isfinite(net.points[..., 0])] = -1  # in a hole
     points = np.where(face[..., None] < 0, np.nan, lattice)
@@ -55,7 +55,7 @@ def as_net(net: Net, problem: Problem, found: Relaxed) -> Net:
         cell_valid=cell_valid,
         cell_shear=np.where(cell_valid, net.cell_shear + after[0] - before[0], np.nan),
         shear=np.where(np.isfinite(points[..., 0]), net.shear + after[1] - before[1], np.nan),
-        yarns=_yarns(lattice, found, moves),
+        yarns=_yarns(lattice, found, nodes),
         sides=_sides(net, problem, found),
         notes=(*net.notes, f"net of least energy, forces balanced to {found.unrest:.0e} in {found.rounds} rounds"),
         warnings=(*net.warnings, *_doubts(net, found)),
@@ -107,10 +107,10 @@ def chord_shears(x: np.ndarray, valid: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return cells, np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 
-def _yarns(lattice: np.ndarray, found: Relaxed, moves: np.ndarray) -> np.ndarray:
+def _yarns(lattice: np.ndarray, found: Relaxed, nodes: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
     """Unit directions of warp and weft (2, nu, nv, 3) in the tangent plane: the mean of both pieces at a node."""
     normal = np.zeros(lattice.shape)
-    normal[moves] = found.footing.normal
+    normal[nodes] = found.footing.normal
     out = np.zeros((2, *lattice.shape))
     for family in range(2):
         piece = np.nan_to_num(np.diff(lattice, axis=family))

@@ -87,35 +87,86 @@ def stand(surface: Surface, corner_normals: np.ndarray, points: np.ndarray, last
     else:
         mesh = (surface.points, surface.triangles, surface.neighbours, surface.neighbour_edge)
         point, face = nearest_from(*mesh, points, last.face)
-    corners = surface.triangles[face]
-    gradient = _hat_gradients(surface, face, corners)
-    vertices = surface.points[corners]
-    share = np.einsum("nkx,nx->nk", gradient, point - vertices[:, 0])
-    share[:, 0] += 1.0
-    normals = corner_normals[face]
-    depth = 0.5 * share * (normals * (vertices - point[:, None])).sum(axis=2)
-    lift = np.einsum("nk,nkx->nx", depth, normals)
-    normal = np.einsum("nk,nkx->nx", share, normals)
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    beyond = points - point
-    flat = surface.normals[face]
-    beyond -= (beyond * flat).sum(axis=1, keepdims=True) * flat
-    beyond[(surface.neighbours[face] >= 0).all(axis=1)] = 0.0
-    turning = np.einsum("nkx,nky->nxy", normals, gradient)
-    outside = np.linalg.norm(beyond, axis=1)
-    return Footing(point + beyond, point + beyond + lift, face, normal, turning, outside)
+    part = (surface.points, surface.triangles, surface.neighbours, surface.normals, surface.areas)
+    return Footing(point, *footing(*part, corner_normals, points, point, face))
 
 
-def _hat_gradients(surface: Surface, face: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Gradients (n, 3, 3) of the three barycentric coordinates in facets, per mm."""
-    p = surface.points[corners]
-    normal, double = surface.normals[face], 2.0 * surface.areas[face]
-    opposite = np.stack([p[:, 2] - p[:, 1], p[:, 0] - p[:, 2], p[:, 1] - p[:, 0]], axis=1)
-    return np.cross(normal[:, None], opposite) / double[:, None, None]
+@kernel
+def footing(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    neighbours: np.ndarray,
+    normals: np.ndarray,
+    areas: np.ndarray,
+    corner_normals: np.ndarray,
+    goal: np.ndarray,
+    point: np.ndarray,
+    face: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The rest of a ``Footing`` over the places ``point`` (n, 3) of faces (n,) next to goals (n, 3).
+
+    Where a goal lies beyond the rim ``point`` is moved there, in the plane of the facet.
+    """
+    lifted, normal, outside = np.empty_like(point), np.zeros_like(point), np.zeros(len(point))
+    turning = np.zeros((len(point), 3, 3))
+    for n in range(len(point)):
+        f = face[n]
+        nx, ny, nz = normals[f, 0], normals[f, 1], normals[f, 2]
+        px, py, pz = point[n, 0], point[n, 1], point[n, 2]
+        lx = ly = lz = 0.0
+        for k in range(3):
+            o, e, t = triangles[f, k], triangles[f, (k + 1) % 3], triangles[f, (k + 2) % 3]
+            ex = (vertices[t, 0] - vertices[e, 0]) / (2.0 * areas[f])
+            ey = (vertices[t, 1] - vertices[e, 1]) / (2.0 * areas[f])
+            ez = (vertices[t, 2] - vertices[e, 2]) / (2.0 * areas[f])
+            hx, hy, hz = ny * ez - nz * ey, nz * ex - nx * ez, nx * ey - ny * ex  # gradient of the corner's share
+            ax, ay, az = px - vertices[o, 0], py - vertices[o, 1], pz - vertices[o, 2]
+            share = 1.0 + hx * ax + hy * ay + hz * az
+            cx, cy, cz = corner_normals[f, k, 0], corner_normals[f, k, 1], corner_normals[f, k, 2]
+            depth = -0.5 * share * (cx * ax + cy * ay + cz * az)
+            lx += depth * cx
+            ly += depth * cy
+            lz += depth * cz
+            for r in range(3):
+                c = corner_normals[f, k, r]
+                normal[n, r] += share * c
+                turning[n, r, 0] += c * hx
+                turning[n, r, 1] += c * hy
+                turning[n, r, 2] += c * hz
+        size = math.sqrt(normal[n, 0] ** 2 + normal[n, 1] ** 2 + normal[n, 2] ** 2)
+        normal[n] /= size
+        if neighbours[f, 0] < 0 or neighbours[f, 1] < 0 or neighbours[f, 2] < 0:
+            bx, by, bz = goal[n, 0] - px, goal[n, 1] - py, goal[n, 2] - pz
+            up = bx * nx + by * ny + bz * nz
+            bx, by, bz = bx - up * nx, by - up * ny, bz - up * nz
+            outside[n] = math.sqrt(bx * bx + by * by + bz * bz)
+            px, py, pz = px + bx, py + by, pz + bz
+            point[n, 0], point[n, 1], point[n, 2] = px, py, pz
+        lifted[n, 0], lifted[n, 1], lifted[n, 2] = px + lx, py + ly, pz + lz
+    return lifted, face, normal, turning, outside
 
 
+@kernel
 def tangents(normal: np.ndarray, toward: np.ndarray) -> np.ndarray:
-    """Orthonormal tangent vectors (n, 3, 2) at unit normals (n, 3), the first as much along ``toward`` as can be."""
-    first = toward - (toward * normal).sum(axis=1, keepdims=True) * normal
-    first /= np.linalg.norm(first, axis=1, keepdims=True)
-    return np.stack([first, np.cross(normal, first)], axis=2)
+    """Orthonormal tangent vectors (n, 3, 2) at unit normals (n, 3), the first as much along ``toward`` as can be.
+
+    Where ``toward`` (n, 3) is 0 it is along the axis that is most tangential.
+    """
+    out = np.empty((len(normal), 3, 2))
+    for n in range(len(normal)):
+        x, y, z = normal[n, 0], normal[n, 1], normal[n, 2]
+        tx, ty, tz = toward[n, 0], toward[n, 1], toward[n, 2]
+        if tx == 0.0 and ty == 0.0 and tz == 0.0:
+            if abs(x) <= abs(y) and abs(x) <= abs(z):
+                tx = 1.0
+            elif abs(y) <= abs(z):
+                ty = 1.0
+            else:
+                tz = 1.0
+        up = tx * x + ty * y + tz * z
+        tx, ty, tz = tx - up * x, ty - up * y, tz - up * z
+        size = math.sqrt(tx * tx + ty * ty + tz * tz)
+        tx, ty, tz = tx / size, ty / size, tz / size
+        out[n, 0, 0], out[n, 1, 0], out[n, 2, 0] = tx, ty, tz
+        out[n, 0, 1], out[n, 1, 1], out[n, 2, 1] = y * tz - z * ty, z * tx - x * tz, x * ty - y * tx
+    return out

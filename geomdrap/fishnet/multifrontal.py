@@ -1,0 +1,176 @@
+"""Solution of the symmetric systems of a net, front by front.
+
+Each front is a small dense matrix: what its own unknowns have with one another and with later ones, and what the two
+fronts before it have passed on. Its own unknowns are eliminated without pivoting (L·D·Lᵀ), the rest is passed on.
+
+Source: I. S. Duff and J. K. Reid, The multifrontal solution of indefinite sparse symmetric linear equations, ACM
+Trans. Math. Software 9 (1983).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geomdrap.fishnet.dissection import AFTER, Fronts
+from geomdrap.geodesic.compiled import kernel, tight
+
+
+@tight
+def eliminate(a: np.ndarray, first: int) -> None:
+    """Eliminate the ``first`` unknowns of the upper half of a (s, s) in place.
+
+    Their rows are left as they were when their turn came: D·Lᵀ. Four at a time, from two rows at once, so that what
+    is left is touched less often; columns are unsigned, without which the loops are not vectorised. What is below the
+    diagonal is not used, and spoilt.
+    """
+    s = a.shape[0]
+    for k in range(0, first, 4):
+        end = min(k + 4, first)
+        for p in range(k, end):
+            for q in range(p + 1, end):
+                subtract(a, p, q)
+        if end < k + 4:
+            for p in range(k, end):
+                for q in range(end, s):
+                    subtract(a, p, q)
+            continue
+        d0, d1, d2, d3 = 1.0 / a[k, k], 1.0 / a[k + 1, k + 1], 1.0 / a[k + 2, k + 2], 1.0 / a[k + 3, k + 3]
+        for i in range(end, s - 1, 2):
+            b0, b1, b2, b3 = a[k, i] * d0, a[k + 1, i] * d1, a[k + 2, i] * d2, a[k + 3, i] * d3
+            c0, c1, c2, c3 = a[k, i + 1] * d0, a[k + 1, i + 1] * d1, a[k + 2, i + 1] * d2, a[k + 3, i + 1] * d3
+            for j in range(np.uint64(i), np.uint64(s)):
+                x0, x1, x2, x3 = a[k, j], a[k + 1, j], a[k + 2, j], a[k + 3, j]
+                a[i, j] -= b0 * x0 + b1 * x1 + b2 * x2 + b3 * x3
+                a[i + 1, j] -= c0 * x0 + c1 * x1 + c2 * x2 + c3 * x3
+        if (s - end) % 2 == 1:
+            for p in range(k, end):
+                subtract(a, p, s - 1)
+
+
+@tight
+def subtract(a: np.ndarray, p: int, q: int) -> None:
+    """Take from row q of a what eliminates unknown p < q."""
+    c = a[p, q] / a[p, p]
+    for j in range(np.uint64(q), np.uint64(a.shape[0])):
+        a[q, j] -= c * a[p, j]
+
+
+@tight
+def add_own(
+    a: np.ndarray,
+    f: int,
+    fronts: Fronts,
+    place: np.ndarray,
+    nodes: tuple[np.ndarray, np.ndarray],
+    number: np.ndarray,
+    blocks: np.ndarray,
+    slopes: np.ndarray,
+    soft: float,
+) -> None:
+    """Add to the front a (s, s) what its own unknowns have among themselves and with later ones."""
+    n = len(nodes[0])
+    for t in range(fronts.own[f]):
+        unknown = fronts.unknowns[fronts.start[f] + t]
+        if unknown >= 2 * n:
+            a[t, t] -= soft
+            continue
+        node, r = unknown // 2, unknown % 2
+        i, j = nodes[0][node], nodes[1][node]
+        a[t, t] += blocks[node, 0, r, r]
+        if r == 0:
+            a[t, t + 1] += blocks[node, 0, 0, 1]
+        for k in range(1, len(AFTER)):
+            for turn in range(2):  # those after the node, and those before it
+                k_i = i + AFTER[k][0] if turn == 0 else i - AFTER[k][0]
+                k_j = j + AFTER[k][1] if turn == 0 else j - AFTER[k][1]
+                if k_i < 0 or k_j < 0 or k_i >= number.shape[0] or k_j >= number.shape[1]:
+                    continue
+                other = number[k_i, k_j]
+                if other < 0 or fronts.home[2 * other] < f or (turn == 1 and fronts.home[2 * other] == f):
+                    continue
+                for c in range(2):
+                    q = place[2 * other + c]
+                    a[min(t, q), max(t, q)] += blocks[node, k, r, c] if turn == 0 else blocks[other, k, c, r]
+        if soft > 0.0:
+            q = place[2 * n + j]
+            a[min(t, q), max(t, q)] += slopes[0, unknown]
+            q = place[2 * n + number.shape[1] + i]
+            a[min(t, q), max(t, q)] += slopes[1, unknown]
+
+
+@tight
+def add_passed(a: np.ndarray, fronts: Fronts, place: np.ndarray, g: int, left: np.ndarray, from_: int) -> None:
+    """Add to the front a (s, s) what front g has passed on, ``left`` from ``from_`` on."""
+    at = fronts.start[g] + fronts.own[g]
+    size = fronts.start[g + 1] - at
+    for p in range(size):
+        to = place[fronts.unknowns[at + p]]
+        for q in range(p, size):
+            other = place[fronts.unknowns[at + q]]
+            a[min(to, other), max(to, other)] += left[from_ + p * size + q]
+
+
+@tight
+def reduce_right(a: np.ndarray, fronts: Fronts, f: int, x: np.ndarray) -> None:
+    """Eliminate front f, of which a (s, s) has the rows D·Lᵀ, from the right-hand side x."""
+    first = fronts.start[f]
+    for t in range(fronts.own[f]):
+        z = x[fronts.unknowns[first + t]] / a[t, t]
+        for q in range(t + 1, a.shape[0]):
+            x[fronts.unknowns[first + q]] -= a[t, q] * z
+
+
+@tight
+def substitute_back(fronts: Fronts, f: int, rows: np.ndarray, from_: int, x: np.ndarray) -> None:
+    """Solve for the unknowns of front f, whose rows D·Lᵀ begin in ``rows`` at ``from_``, in place in x."""
+    first = fronts.start[f]
+    s = fronts.start[f + 1] - first
+    for t in range(fronts.own[f] - 1, -1, -1):
+        z = x[fronts.unknowns[first + t]]
+        for q in range(t + 1, s):
+            z -= rows[from_ + t * s + q] * x[fronts.unknowns[first + q]]
+        x[fronts.unknowns[first + t]] = z / rows[from_ + t * s + t]
+
+
+@kernel
+def solve(
+    fronts: Fronts,
+    nodes: tuple[np.ndarray, np.ndarray],
+    number: np.ndarray,
+    blocks: np.ndarray,
+    slopes: np.ndarray,
+    soft: float,
+    right: np.ndarray,
+) -> np.ndarray:
+    """Solution (2n,) for ``right`` (2n,).
+
+    ``blocks`` (n, 5, 2, 2) of each node with those ``AFTER`` it; ``slopes`` (2, 2n) of the unknowns with the tensions
+    of their warp and weft yarns, whose diagonal is -``soft``: with soft = 1/κ the matrix is that with κ·slope·slopeᵀ
+    added. With soft = 0 there are no yarns. Not finite where a pivot vanishes.
+    """
+    m = len(fronts.own)
+    held, passed = np.zeros(m + 1, np.int64), np.zeros(m + 1, np.int64)
+    for f in range(m):
+        s, e = fronts.start[f + 1] - fronts.start[f], fronts.own[f]
+        held[f + 1], passed[f + 1] = held[f] + e * s, passed[f] + (s - e) * (s - e)
+    rows, left = np.empty(held[m]), np.empty(passed[m])
+    place, x = np.zeros(len(fronts.home), np.int64), np.zeros(len(fronts.home))
+    x[: len(right)] = right
+    for f in range(m):
+        first, s, e = fronts.start[f], fronts.start[f + 1] - fronts.start[f], fronts.own[f]
+        for t in range(s):
+            place[fronts.unknowns[first + t]] = t
+        a = np.zeros((s, s))
+        for g in fronts.halves[f]:
+            if g >= 0:
+                add_passed(a, fronts, place, g, left, passed[g])
+        add_own(a, f, fronts, place, nodes, number, blocks, slopes, soft)
+        eliminate(a, e)
+        reduce_right(a, fronts, f, x)
+        for t in range(e):
+            rows[held[f] + t * s : held[f] + (t + 1) * s] = a[t]
+        for t in range(s - e):
+            left[passed[f] + t * (s - e) : passed[f] + (t + 1) * (s - e)] = a[e + t, e:]
+    for f in range(m - 1, -1, -1):
+        substitute_back(fronts, f, rows, held[f], x)
+    return x[: len(right)]
