@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
-from geomdrap.criticism.evidence import FAMILY, LEAST_SHARE, alike_in_what_they_leave, rivals
+from geomdrap.criticism.evidence import alike_in_what_they_leave, rivals
 from geomdrap.criticism.experiment import Experiment, Layup
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
+from geomdrap.criticism.locked import LOCKING, doubted, locks, shear_stops
 from geomdrap.criticism.model import Fitted, fit_placement, refined, refit, unfitted, with_fresh_slopes
-from geomdrap.criticism.plateau import Plateau, plateau
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round, judge_of, try_effects
 from geomdrap.criticism.table import tried_of, values_of
@@ -38,9 +38,9 @@ Progress = Callable[[float, str], None]
 
 MOST_EFFECTS = 2
 SHIFTED = 0.5  # mm: a seed that lies further off than this is named
-LOCKING = "locking"
 TURNED = 0.4  # degrees: likewise
 CERTAIN = 3.0  # standard deviations of the placement
+ELSEWHERE = 1.5  # of the chi-square on the coarser net: a finer one that fits worse came to rest elsewhere
 WORTH = 0.03  # of the first misfit: what a further effect must explain
 
 
@@ -86,7 +86,7 @@ def search(experiment: Experiment, names: Sequence[str], progress: Progress) -> 
         told = _teller(progress, len(rounds), len(left))
         rounds.append(try_effects(experiment, base, whiten, left, told))
         best = chosen(rounds)
-        if best is None or len(rounds) == MOST_EFFECTS or _locks(experiment, rounds[0]):
+        if best is None or len(rounds) == MOST_EFFECTS or locks(experiment, rounds[0]):
             return rounds
         base, scatter = rounds[-1].trial(best)
         if not (worth_more(rounds[0], base) and left_over(experiment, base, scatter).structured):
@@ -146,11 +146,13 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
     left = left_over(experiment, model, scatter)
     alike = rivals(rounds[len(names) - 1].evidence) if names else ()
     # a plateau that the model found does not foretell is no matter of chance: nothing else makes one
-    if _locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):
+    if locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):
         names, alike = [LOCKING], (LOCKING,)
         model, scatter = rounds[0].trial(LOCKING)
         experiment, model = _final(meant, model, scatter)
         left = left_over(experiment, model, scatter)
+    if LOCKING in names:
+        model = doubted(experiment, rounds[0], model)
     unexplained = left.structured and worth_more(rounds[0], model) and names != [LOCKING]
     if unexplained and len(alike) == 1:
         near = alike_in_what_they_leave(rounds[len(names) - 1].evidence)
@@ -171,43 +173,35 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         leftover=left,
         outliers=_outliers(experiment, model),
         hints=hints_for(experiment, rounds, verdict, candidates, model, left),
-        notes=(*notes, *_failures(experiment, rounds)),
+        notes=(*notes, *_coarser(meant, experiment, model), *_failures(experiment, rounds)),
     )
 
 
 def _final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Experiment, Fitted]:
-    """The model fitted to the end, under the scatter that it leaves, and the experiment with the nets for that."""
+    """The model fitted to the end, under the scatter that it leaves, and the experiment with the nets for that.
+
+    A finer net that fits much worse came to rest in another place, and tells nothing of the values.
+    """
     rows = np.isfinite(model.fit.residual)
     whole = bool(rows.all())
     whiten = judge_of(experiment, rows).whiten(scatter) if whole else white(experiment)
     if any(make(name).costly for name in model.model.effects):
         finer = experiment.finer()
-        return finer, refined(finer, whiten, model, experiment.pitches[1] / finer.pitches[1])
+        better = refined(finer, whiten, model, experiment.pitches[1] / finer.pitches[1])
+        return (finer, better) if better.fit.chi2 < ELSEWHERE * model.fit.chi2 else (experiment, model)
     if scatter.size > 0.0 and whole:
         model = refit(experiment, whiten, model)
     return experiment, with_fresh_slopes(experiment, model)
 
 
-def shear_stops(experiment: Experiment, model: Fitted, scatter: Scatter) -> Plateau | None:
-    """The plateau of the shear where a model foretells more, if shear was measured and has one."""
-    if "shear" not in experiment.channels:
-        return None
-    own = experiment.channel_of() == experiment.channels.index("shear")
-    measured, predicted = experiment.measured[own], (experiment.measured - model.fit.residual)[own]
-    noise = float(np.median(experiment.noise[own]))
-    # a model that is off makes its misfit pass for scatter: the noise alone is tried as well
-    return plateau(measured, predicted, noise) or plateau(measured, predicted, float(np.hypot(noise, scatter.shear)))
-
-
-def _locks(experiment: Experiment, first: Round) -> bool:
-    """Whether the shear stops at an angle, and locking explains a good share of the misfit."""
-    possible = any(e.name == LOCKING and e.p_family < FAMILY and e.share >= LEAST_SHARE for e in first.evidence)
-    return possible and shear_stops(experiment, first.base, _least_scatter(first)) is not None
-
-
-def _least_scatter(of: Round) -> Scatter:
-    """The smallest scatter that any of the models of a round leaves."""
-    return min(of.scatter, key=lambda s: s.size)
+def _coarser(meant: Experiment, final: Experiment, model: Fitted) -> tuple[str, ...]:
+    """A sentence where values had to be left to the coarser net."""
+    if final is not meant or not any(make(name).costly for name in model.model.effects):
+        return ()
+    return (
+        f"the values of {' and '.join(model.model.effects)} are those of a net of {meant.pitches[1]:g} mm: a finer "
+        "one came to rest elsewhere, so their intervals are too narrow",
+    )
 
 
 def _failures(experiment: Experiment, rounds: Sequence[Round]) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 DEFAULT_RATIO = 0.003  # shear stiffness where only its asymmetry is given
-SOFT_RATIO = 1e-3  # shear stiffness where only a locking angle is given: with none, many nets are minimal
+FRICTION = 0.05  # on the tool where only a locking angle is given: without it many nets are minimal
 LOCK_STIFFNESS = 1.0  # of the yarns: resistance to shear beyond the locking angle
 BALANCED = 1e-6  # of the largest forces at a node: what may be left of them
 GOOD_ENOUGH = 1e-3  # beyond, a warning is given
@@ -46,7 +46,7 @@ class Problem:
 
     ``x0`` (nu, nv, 3) is the geometric net, ``nodes`` the places (i, j) of the n that move, ``number`` (nu, nv) of
     these, -1 for others; ``fixed`` node and ``guided`` node, which moves only in the plane through the seed across
-    ``side``, and where they are, ``held`` (2, 3) mm.
+    ``side``, and where they are, ``held`` (2, 3) mm; ``friction`` per mm² of the law on a net of this area.
     """
 
     surface: Surface
@@ -57,6 +57,7 @@ class Problem:
     rest_u: np.ndarray
     rest_v: np.ndarray
     law: Law
+    friction: float
     nodes: tuple[np.ndarray, np.ndarray]
     number: np.ndarray
     fixed: tuple[int, int]
@@ -81,15 +82,16 @@ class Relaxed:
 
 
 def law_of(fabric: Fabric) -> Law:
-    """The energy of a fabric; where no stiffness is given it is as small as the rest allows."""
-    given = fabric.shear_stiffness
-    default = DEFAULT_RATIO if fabric.shear_asymmetry else SOFT_RATIO
-    angle = fabric.locking_angle
+    """The energy of a fabric; where only a locking angle is given, nothing but friction resists below it."""
+    ratio, angle = fabric.shear_stiffness, fabric.locking_angle
+    if ratio is None and fabric.shear_asymmetry:
+        ratio = DEFAULT_RATIO
     return Law(
-        ratio=default if given is None else given,
+        ratio=ratio or 0.0,
         alpha=fabric.shear_asymmetry or 0.0,
         lock=0.0 if angle is None else LOCK_STIFFNESS,
         lock_sine=1.0 if angle is None else math.sin(math.radians(angle)),
+        friction=FRICTION if ratio is None else 0.0,
     )
 
 
@@ -116,15 +118,18 @@ def pose(net: Net, law: Law) -> Problem:
     normals = smooth_normals(surface.triangles, surface.normals, surface.corner_angles, len(surface.points))
     x = np.full(lattice.shape, np.nan)
     x[nodes] = stand(surface, normals, lattice[nodes]).lifted
+    rest_u, rest_v = (np.linalg.norm(np.diff(x, axis=axis), axis=2) for axis in (0, 1))
+    area = float(valid.sum() * rest_u[warp].mean() * rest_v[weft].mean())
     return Problem(
         surface=surface,
         corner_normals=normals,
         valid=valid,
         target=np.zeros((*valid.shape, 2, 2)),
         x0=x,
-        rest_u=np.where(warp, np.linalg.norm(np.diff(x, axis=0), axis=2), 0.0),
-        rest_v=np.where(weft, np.linalg.norm(np.diff(x, axis=1), axis=2), 0.0),
+        rest_u=np.where(warp, rest_u, 0.0),
+        rest_v=np.where(weft, rest_v, 0.0),
         law=law,
+        friction=law.friction / area,
         nodes=nodes,
         number=number,
         fixed=(i, j),
@@ -170,7 +175,10 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
 
 
 def _energy(problem: Problem, x: np.ndarray) -> float:
-    return float(energy(x, problem.valid, problem.target, problem.rest_u, problem.rest_v, problem.law))
+    stored = float(energy(x, problem.valid, problem.target, problem.rest_u, problem.rest_v, problem.law))
+    if problem.friction == 0.0:
+        return stored
+    return stored + problem.friction * float(((x - problem.x0)[problem.nodes] ** 2).sum())
 
 
 def _searched(

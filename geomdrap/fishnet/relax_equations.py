@@ -49,8 +49,11 @@ def equations_at(problem: Problem, x: np.ndarray, footing: Footing, full: bool) 
     g, h, size = derivatives(
         x, basis, problem.valid, problem.target, problem.rest_u, problem.rest_v, problem.law, full
     )
-    blocks = h[problem.nodes]
-    gradient = along_tangents(g[problem.nodes], bases, footing.normal, footing.turning, blocks, full)
+    force, blocks = g[problem.nodes], h[problem.nodes]
+    if problem.friction > 0.0:
+        force += 2.0 * problem.friction * (x - problem.x0)[problem.nodes]
+        blocks[:, 0] += 2.0 * problem.friction * np.einsum("nxa,nxb->nab", bases, bases)
+    gradient = along_tangents(force, bases, footing.normal, footing.turning, blocks, full)
     for node, first in ((problem.fixed, 0), (problem.guided, 1)):
         held = np.arange(first, 2)
         blocks[problem.number[node], 0, held, held] += 1.0

@@ -63,7 +63,7 @@ def test_locking_in_place_of_another_costly_effect_is_fitted_on_a_net_of_half_th
 
     monkeypatch.setattr(diagnose, "refined", record)
     monkeypatch.setattr(diagnose, "left_over", lambda *_: SimpleNamespace(structured=True))
-    monkeypatch.setattr(diagnose, "_locks", lambda *_: True)
+    monkeypatch.setattr(diagnose, "locks", lambda *_: True)
     with pytest.raises(StopIteration):
         diagnose.conclude(experiment((1.0, 8.0)), [of], ())
     assert asked == [(("shear-stiffness",), 4.0), (("locking",), 4.0)]
