@@ -63,7 +63,7 @@ def uniaxial(angle: Sequence[float], speed: Sequence[float], undulation: Sequenc
       geomdrap coupon uniaxial --undulation 0,0.005
     """
     from geomdrap.forming import coupon as coupons
-    from geomdrap.forming.fit_coupon import with_values
+    from geomdrap.forming.parameters import with_values
 
     show = _shown(asked)
     cloth = cloth_of(coupons.usual_cloth("uniaxial"), asked)

@@ -86,11 +86,11 @@ def ledger_of(model: Model, state: State) -> Ledger:
 def scheme_energy(model: Model, state: State, after: Array, push: Array) -> float:
     """Δt²/12 (v·K v + f·M⁻¹ f), N mm: with it and v⁻·M v⁺/2 central differences keep their energy to third order.
 
-    Without it stored energy and motion trade a share of Δt² of the energy where the stiffness changes, as it does where
-    yarns go slack; nothing is lost by that (E. Hairer, C. Lubich, G. Wanner, Acta Numerica 12 (2003) 399). K v from
-    the forces before and after the last step; what the scheme keeps of a linear fabric, this keeps exactly. ``after``
-    (3n,) mm/s: velocities half a step on; ``push`` (3n,) mm/s: the change of velocity by the forces. It is for free
-    motion: damping and impacts on tools take it along, and nothing books that.
+    Without it stored energy and motion trade a share of Δt² of the energy where the stiffness changes, as it does
+    where yarns go slack; nothing is lost by that (E. Hairer, C. Lubich, G. Wanner, Acta Numerica 12 (2003) 399). K v
+    is from the forces before and after the last step; what the scheme keeps of a linear fabric, this keeps exactly.
+    ``after`` (3n,) mm/s: velocities half a step on; ``push`` (3n,) mm/s: the change of velocity by the forces. It is
+    for free motion: damping and impacts on tools take it along, and nothing books that.
     """
     free = np.repeat(model.free, 3)
     rate = (state.before - state.f) * free
