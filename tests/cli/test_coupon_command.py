@@ -124,6 +124,30 @@ def test_a_list_that_is_not_numbers_is_refused(error_of: Callable[..., str]) -> 
     assert "not a finite number, or several with commas" in error_of("coupon", "picture-frame", "--shear", "10,x")
 
 
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--speed", "20,-1"), "a speed must be above 0 mm/min; got -1"),
+        (("--angle", "45,100"), "an angle lies between 0 and 90 degrees; got 100"),
+        (("--undulation", "0,-1"), "the undulation must be 0 (a strain) or more; got -1"),
+    ],
+)
+def test_a_list_is_checked_before_its_first_case_is_pulled(
+    error_of: Callable[..., str], monkeypatch: pytest.MonkeyPatch, options: tuple, said: str
+) -> None:
+    def never(*_: object, **__: object) -> None:
+        raise AssertionError("a case was pulled")
+
+    monkeypatch.setattr("geomdrap.forming.coupon.uniaxial", never)
+    assert said in error_of("coupon", "uniaxial", *options)
+
+
+def test_yarns_that_would_have_broken_are_warned_of(run: Callable[..., Result]) -> None:
+    strip = ("coupon", "uniaxial", "--angle", 0, "--cells", 2, "--steps", 4000, "--frames", 8, "--outputs", "none")
+    assert "beyond their crimp at the end: no such yarn bears that" in run(*strip, "--displacement", 30).stderr
+    assert "crimp" not in run(*strip, "--displacement", 3).stderr
+
+
 def test_an_unknown_test_is_refused(error_of: Callable[..., str]) -> None:
     assert "torsion" in error_of("coupon", "torsion")
 
