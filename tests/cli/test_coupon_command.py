@@ -173,6 +173,12 @@ def _shear_table(path: Path, text: str) -> None:
 
 
 @pytest.fixture
+def one_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fits begin at the given cloth: what is looked at here does not depend on where they begin."""
+    monkeypatch.setattr("geomdrap.forming.fit_coupon.minima", lambda _, __, start: [start])
+
+
+@pytest.fixture
 def no_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     """No fit may begin."""
 
@@ -204,6 +210,7 @@ def test_a_split_of_no_use_is_refused(error_of: Callable[..., str], tmp_path: Pa
     )
 
 
+@pytest.mark.usefixtures("one_start")
 @pytest.mark.parametrize(
     ("rows", "said"),
     [
@@ -219,6 +226,7 @@ def test_a_fit_without_a_verdict_says_why(run: Callable[..., Result], tmp_path: 
     assert "lacks" not in json.loads(result.stdout)
 
 
+@pytest.mark.usefixtures("one_start")
 def test_a_fit_is_kept_where_a_run_for_the_verdict_diverges(
     run: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -347,6 +355,7 @@ def _strip_twin(path: Path, angle: float, furthest: float) -> None:
     path.write_text("displacement,force\n" + "".join(f"{a:.6f},{b:.6f}\n" for a, b in zip(d, noisy, strict=True)))
 
 
+@pytest.mark.usefixtures("one_start")
 def test_a_further_test_is_fitted_at_once_and_shown(run: Callable[..., Result], tmp_path: Path) -> None:
     _strip_twin(tmp_path / "0.csv", 0.0, 3.0)
     _frame_twin(tmp_path / "frame.csv")
