@@ -35,7 +35,7 @@ LENGTH, WIDTH = 150.0, 30.0  # mm, of a strip unless told otherwise
     "--also",
     type=FurtherTest(),
     multiple=True,
-    help="Another test of the same cloth, fitted at once, with its settings; may be repeated.",
+    help="Another test of the same cloth, fitted at once; settings not named are the usual ones. May be repeated.",
 )
 @click.option(
     "--split", type=Number("MM"), help="Fit the shear up to here and foretell the rest.  [default: 0.7 of all]"
@@ -79,9 +79,9 @@ def fit(
 
     MEASURED is CSV with a header: displacement (mm) and force or shear (bias-extension: both are welcome), or
     force_warp and force_weft (biaxial); a column series tells ways of reading apart. The options give the test and
-    the cloth at which the fit starts. Where a bias-extension test gives the shear, effects that the model lacks are
-    fitted on top of it to the first part of the curve, and must foretell the rest. What one test does not tell apart,
-    two may: --also adds tests of the same cloth, each a file with one series. Exit code 1 if a fit did not end.
+    the cloth about which the fit looks for a start. Where a bias-extension test gives the shear, effects that the
+    model lacks are fitted on top of it to the first part of the curve, and must foretell the rest. What one test does
+    not tell apart, two may: --also adds tests of the same cloth, each a file with one series. Exit code 1 if a fit did not end.
 
     \b
     Examples:
