@@ -81,7 +81,8 @@ def fit(
     force_warp and force_weft (biaxial); a column series tells ways of reading apart. The options give the test and
     the cloth about which the fit looks for a start. Where a bias-extension test gives the shear, effects that the
     model lacks are fitted on top of it to the first part of the curve, and must foretell the rest. What one test does
-    not tell apart, two may: --also adds tests of the same cloth, each a file with one series. Exit code 1 if a fit did not end.
+    not tell apart, two may: --also adds tests of the same cloth, each a file with one series. Exit code 1
+    if a fit did not end.
 
     \b
     Examples:
