@@ -63,9 +63,10 @@ def uniaxial(angle: Sequence[float], speed: Sequence[float], undulation: Sequenc
       geomdrap coupon uniaxial --undulation 0,0.005
     """
     from geomdrap.forming import coupon as coupons
-    from geomdrap.forming.fit_coupon import with_values
+    from geomdrap.forming.parameters import with_values
 
     show = _shown(asked)
+    _check_lists(angle, speed)
     cloth = cloth_of(coupons.usual_cloth("uniaxial"), asked)
     cases = [
         (coupons.uniaxial, (with_values(cloth, {"undulation": u}),), {**asked, "angle": a, "speed": s})
@@ -152,6 +153,15 @@ def biaxial(**asked: Any) -> int:
     return _test([(coupons.biaxial, (cloth,), asked)], **show)
 
 
+def _check_lists(angle: Sequence[float], speed: Sequence[float]) -> None:
+    """Refuse what the last case of a list would be refused for, before the first one is pulled."""
+    if min(speed) <= 0.0:
+        raise click.UsageError(f"a speed must be above 0 mm/min; got {min(speed):g}")
+    for one in angle:
+        if not 0.0 <= one <= 90.0:
+            raise click.UsageError(f"an angle lies between 0 and 90 degrees; got {one:g}")
+
+
 def _shown(asked: dict[str, Any]) -> dict[str, Any]:
     """Take out of ``asked`` how results are shown, and refuse a folder that cannot be written."""
     from geomdrap.export.whole import check_writable
@@ -198,9 +208,11 @@ def _summary(case: Coupon) -> list[str]:
     """What a test gave, in two lines."""
     pulled = case.result
     named = {k: v for k, v in case.settings.items() if k in ("angle", "speed", "ratio", "side")}
+    if case.test == "uniaxial":
+        named["undulation"] = pulled.specimen.cloth.warp.undulation
     forces = ", ".join(f"{name.replace('_', ' ')} {values[-1]:.5g} N" for name, values in pulled.forces.items())
     return [
         f"{case.test}: " + ", ".join(f"{name} {value:g}" for name, value in named.items()),
-        f"  at {pulled.displacement[-1]:.4g} mm: {forces}, shear {pulled.shear[-1]:.2f} deg; "
+        f"  at {pulled.displacement[-1]:.4g} mm: {forces}, shear {round(pulled.shear[-1], 2) + 0.0:.2f} deg; "
         f"{100 * pulled.balance_error:.2g} % of the energy unaccounted for",
     ]

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from geomdrap.cli.coupon_also import SETTINGS, TESTS, Further, FurtherTest
+from geomdrap.cli.coupon_fit_summary import summary_of, warnings_of
 from geomdrap.cli.coupon_options import cloth_of, cloth_options, yarn_options
 from geomdrap.cli.options import folder_option, json_option, quiet_option
 from geomdrap.cli.values import Names, Number
@@ -16,18 +18,11 @@ if TYPE_CHECKING:
     from geomdrap.criticism.curve import Curve
     from geomdrap.criticism.curve_verdict import CurveVerdict
     from geomdrap.forming import Cloth
-    from geomdrap.forming.fit_coupon import CouponFit
 
-TESTS = ("uniaxial", "bias-extension", "picture-frame", "biaxial")  # as in geomdrap.forming; tests compare
 FITTED = ("fibre-modulus", "warp-modulus", "weft-modulus", "undulation", "resin-modulus")
 FIT_OUTPUTS = ("json", "png")
+SIDES = ("warp_modulus", "weft_modulus")
 LENGTH, WIDTH = 150.0, 30.0  # mm, of a strip unless told otherwise
-SETTINGS = {
-    "uniaxial": ("angle", "speed", "length", "width", "steps", "cells"),
-    "bias-extension": ("speed", "length", "width", "steps", "cells"),
-    "picture-frame": ("side", "speed"),
-    "biaxial": ("ratio", "speed", "steps", "cells"),
-}
 
 
 @click.command()
@@ -35,6 +30,12 @@ SETTINGS = {
 @click.argument("measured", type=click.Path(path_type=Path))
 @click.option(
     "--fit", "names", type=Names(FITTED), help="What is fitted.  [default: what the test and its readings show]"
+)
+@click.option(
+    "--also",
+    type=FurtherTest(),
+    multiple=True,
+    help="Another test of the same cloth, fitted at once; settings not named are the usual ones. May be repeated.",
 )
 @click.option(
     "--split", type=Number("MM"), help="Fit the shear up to here and foretell the rest.  [default: 0.7 of all]"
@@ -66,6 +67,7 @@ def fit(
     test: str,
     measured: Path,
     names: tuple[str, ...] | None,
+    also: tuple[Further, ...],
     split: float | None,
     folder: Path,
     outputs: tuple[str, ...],
@@ -77,44 +79,56 @@ def fit(
 
     MEASURED is CSV with a header: displacement (mm) and force or shear (bias-extension: both are welcome), or
     force_warp and force_weft (biaxial); a column series tells ways of reading apart. The options give the test and
-    the cloth at which the fit starts. Where a bias-extension test gives the shear, effects that the model lacks are
-    fitted on top of it to the first part of the curve, and must foretell the rest. Exit code 1 if a fit did not end.
+    the cloth about which the fit looks for a start. Where a bias-extension test gives the shear, effects that the
+    model lacks are fitted on top of it to the first part of the curve, and must foretell the rest. What one test does
+    not tell apart, two may: --also adds tests of the same cloth, each a file with one series. Exit code 1
+    if a fit did not end.
 
     \b
     Examples:
       geomdrap coupon fit biaxial measured.csv
       geomdrap coupon fit uniaxial pull.csv --angle 45 --speed 40 --fit resin-modulus,undulation
+      geomdrap coupon fit uniaxial 45.csv --also uniaxial:0.csv:angle=0
       geomdrap coupon fit bias-extension shear.csv --length 450 --width 150 --json
     """
     from geomdrap.cli.messages import print_json, say
     from geomdrap.cli.progress import Progress, announce_compilation
     from geomdrap.export.coupon_fit_outputs import as_dict, write_fit
     from geomdrap.export.whole import check_writable
+    from geomdrap.forming import fit_coupon
     from geomdrap.forming.coupon import usual_cloth
-    from geomdrap.forming.fit_coupon import fit_coupon
     from geomdrap.forming.readings import read_test
 
     if outputs:
         check_writable(folder)
-    readings, settings = read_test(measured), _settings(test, asked)
+    if names == ():
+        raise click.UsageError(f"--fit needs a parameter; choose from {', '.join(FITTED)}")
+    settings = _settings(test, asked)
+    _check_starts({test, *(one.test for one in also)}, asked)
+    readings = read_test(measured)
+    more = [fit_coupon.Measured(one.test, _only_series(one.path), one.settings) for one in also]
+    if more and len(readings) > 1:
+        raise _many_series(measured, readings)
     cloth = cloth_of(usual_cloth(test), asked)
     curves, split, silent = _to_judge(test, readings, settings, split)
     announce_compilation(quiet, "forming")
     with Progress(quiet) as progress:
         progress.step("Fitting")
         fits = {
-            name: fit_coupon(test, columns, cloth, settings, names, lambda runs: progress.tell(f"{runs} runs"))
+            name: fit_coupon.fit_coupons(
+                [fit_coupon.Measured(test, columns, settings), *more], cloth, names, progress.tell
+            )
             for name, columns in readings.items()
         }
         progress.step("Asking what is missing")
         verdict, silent = _lacks(curves, cloth, settings, split, progress.share) if curves else (None, silent)
         progress.step("Writing")
         files = write_fit(fits, verdict, folder, outputs)
-    say([*(w for name, found in fits.items() for w in _warnings(name, found)), *silent], (), quiet)
+    say([*(w for name, found in fits.items() for w in warnings_of(name, found)), *silent], (), quiet)
     if as_json:
         print_json(as_dict(fits, verdict, files))
     elif not quiet:
-        click.echo("\n".join(_summary(fits, verdict) + [f"wrote {path}" for path in files.values()]))
+        click.echo("\n".join(summary_of(fits, verdict) + [f"wrote {path}" for path in files.values()]))
     return 0 if all(found.identified.converged for found in fits.values()) else 1
 
 
@@ -125,11 +139,31 @@ def _settings(test: str, asked: dict[str, Any]) -> dict[str, Any]:
     strange = [key for key in given if key not in SETTINGS[test]]
     if strange:
         raise click.UsageError(f"--{strange[0]} is not a setting of a {test} test; leave it out")
-    pair, one = ("warp_modulus", "weft_modulus"), ("fibre_modulus",)
-    strange = [key for key in (one if test == "biaxial" else pair) if asked.get(key) is not None]
-    if strange:
-        raise click.UsageError(f"--{strange[0].replace('_', '-')} is not a start of a {test} fit; leave it out")
     return given
+
+
+def _check_starts(tests: set[str], asked: dict[str, Any]) -> None:
+    """Refuse moduli to start at that none of the ``tests`` is fitted by."""
+    refused = (*(("fibre_modulus",) if tests == {"biaxial"} else ()), *(() if "biaxial" in tests else SIDES))
+    strange = [key for key in refused if asked.get(key) is not None]
+    if strange:
+        listed = " and ".join(sorted(tests))
+        raise click.UsageError(f"--{strange[0].replace('_', '-')} is not a start of a {listed} fit; leave it out")
+
+
+def _only_series(path: Path) -> Mapping[str, Any]:
+    from geomdrap.forming.readings import read_test
+
+    found = read_test(path)
+    if len(found) > 1:
+        raise _many_series(path, found)
+    return next(iter(found.values()))
+
+
+def _many_series(path: Path, found: Mapping[str, Any]) -> click.UsageError:
+    return click.UsageError(
+        f"{path} holds the series {', '.join(found)}; with --also each file must hold one: leave the others out"
+    )
 
 
 def _to_judge(
@@ -186,55 +220,3 @@ def _lacks(
     except DivergedError as error:
         return None, [f"no verdict: {error}; the fit is kept"]
     return judge_curves(curves, split, effects), []
-
-
-def _warnings(series: str, found: CouponFit) -> list[str]:
-    """What the user should look at."""
-    known = found.identified
-    said = [] if known.converged else [f"{series}: the fit did not come to an end; what it had is kept"]
-    if known.resized:
-        again = "with masses and steps for a cloth stiffer than it began with"
-        said.append(f"{series}: the fit started over {_times(known.resized)}, {again}")
-    said += [f"{series}: {a} and {b} are not told apart (correlation {c:.2f})" for a, b, c in known.confounded]
-    said += [f"{series}: {name} is not shown by these readings" for name in known.loose]
-    for name in dict.fromkeys([*known.loose, *(n for a, b, _ in known.confounded for n in (a, b))]):
-        k = known.names.index(name)
-        best = min(found.advice, key=lambda a: float(a.sigma[k]), default=None)
-        if best is not None and best.sigma[k] < 0.8 * known.sigma[k]:
-            share = 100.0 * best.sigma[k] / known.sigma[k]
-            said.append(f"{series}: a {best.test} on top would bring sigma of {name} to {share:.0f} % of what it is")
-    return said
-
-
-def _times(count: int) -> str:
-    return "once" if count == 1 else f"{count} times"
-
-
-def _summary(fits: Mapping[str, CouponFit], verdict: CurveVerdict | None) -> list[str]:
-    from geomdrap.forming.fit_coupon import UNITS
-
-    lines = []
-    for series, found in fits.items():
-        known = found.identified
-        rms = ", ".join(
-            f"{c.replace('_', ' ')} {v:.3g} {'deg' if c == 'shear' else 'N'}" for c, v in known.rms.items()
-        )
-        lines.append(f"{found.test}, {series}: residual {rms} (rms, {len(found.displacement)} readings)")
-        for name, value, sigma, (low, high) in zip(
-            known.names, known.values, known.sigma, known.interval, strict=True
-        ):
-            lines.append(f"  {name:15} {value:.5g} ± {sigma:.2g} {UNITS[name]} (95 %: {low:.4g} to {high:.4g})")
-    return lines if verdict is None else [*lines, *_story(verdict)]
-
-
-def _story(verdict: CurveVerdict) -> list[str]:
-    lines = []
-    for series, table in verdict.fits.items():
-        lines.append(f"{series + ': on top of the given cloth':44} rms  held out")
-        for name, one in table.items():
-            pairs = zip(one.effect.parameters, one.values, strict=True)
-            values = ", ".join(f"{p.name} {v:.3g} {p.unit}".strip() for p, v in pairs)
-            doubt = "" if one.plausible else " (not plausible, here or in the first part)"
-            lines.append(f"  {name:40} {one.rms:5.2f} {one.held_rms:5.2f}  {values}{doubt}")
-    lines.append(f"verdict: {verdict.verdict}" + (f" ({', '.join(dict.fromkeys(verdict.candidates.values()))})"))
-    return [*lines, *(f"  {reason}" for reason in verdict.reasons)]

@@ -14,7 +14,7 @@ from geomdrap.export.whole import whole_folder, write_whole
 
 if TYPE_CHECKING:
     from geomdrap.criticism.curve_verdict import CurveVerdict
-    from geomdrap.forming.fit_coupon import CouponFit
+    from geomdrap.forming.fit_coupon import CouponFit, FittedCurve
 
 SCHEMA = "geomdrap.coupon-fit/1"
 FIT_OUTPUTS = {"json": "fit.json", "png": "fit.png"}
@@ -23,9 +23,12 @@ FIT_OUTPUTS = {"json": "fit.json", "png": "fit.png"}
 def as_dict(
     fits: Mapping[str, CouponFit], verdict: CurveVerdict | None = None, files: Mapping[str, str | Path] | None = None
 ) -> dict[str, Any]:
-    """The JSON object: the fit of the first series, all of them under ``series``, and what the curves lack."""
+    """The JSON object: the fit of the first series, all of them under ``series``, and what the curves lack.
+
+    A fit of several tests at once has them under ``tests``, the first as well as the others.
+    """
     first = next(iter(fits.values()))
-    document: dict[str, Any] = {"schema": SCHEMA, "version": __version__, "test": first.test, **_fit(first)}
+    document: dict[str, Any] = {"schema": SCHEMA, "version": __version__, "test": first.curves[0].test, **_fit(first)}
     if len(fits) > 1:
         document["series"] = {name: _fit(fit) for name, fit in fits.items()}
     if verdict is not None:
@@ -35,9 +38,9 @@ def as_dict(
 
 
 def _fit(fit: CouponFit) -> dict[str, Any]:
-    from geomdrap.forming.fit_coupon import UNITS
+    from geomdrap.forming.parameters import UNITS
 
-    found = fit.identified
+    found, first = fit.identified, fit.curves[0]
     parameters = {
         name: {"value": value, "sigma": sigma, "low": low, "high": high, "unit": UNITS[name]}
         for name, value, sigma, (low, high) in zip(
@@ -48,24 +51,30 @@ def _fit(fit: CouponFit) -> dict[str, Any]:
         {
             "parameters": parameters,
             "correlation": found.correlation,
-            "rms": found.rms,
+            "rms": first.rms,
             "scatter": found.scatter,
-            "readings": len(fit.displacement),
+            "readings": sum(len(curve.displacement) for curve in fit.curves),
             "runs": found.runs,
             "resized": found.resized,
             "converged": found.converged,
             "not_told_apart": [list(pair) for pair in found.confounded],
             "not_shown": found.loose,
             "further_tests": [
-                {"test": a.test, "sigma": dict(zip(found.names, a.sigma, strict=True))} for a in fit.advice
+                {"test": a.name, "sigma": dict(zip(found.names, a.sigma, strict=True))} for a in fit.advice
             ],
-            "curve": {
-                "displacement": fit.displacement,
-                "measured": fit.measured,
-                "fitted": fit.fitted,
-            },
+            "fits_as_well": list(fit.rivals),
+            "curve": _curve(first),
+            **({"tests": [_test(curve) for curve in fit.curves]} if len(fit.curves) > 1 else {}),
         }
     )
+
+
+def _test(curve: FittedCurve) -> dict[str, Any]:
+    return {"test": curve.test, "settings": curve.settings, "rms": curve.rms, "curve": _curve(curve)}
+
+
+def _curve(curve: FittedCurve) -> dict[str, Any]:
+    return {"displacement": curve.displacement, "measured": curve.measured, "fitted": curve.fitted}
 
 
 def _lacks(verdict: CurveVerdict) -> dict[str, Any]:

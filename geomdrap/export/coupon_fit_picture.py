@@ -12,7 +12,7 @@ from geomdrap.export.coupon_picture import COLOURS, bare
 
 if TYPE_CHECKING:
     from geomdrap.criticism.curve_verdict import CurveVerdict
-    from geomdrap.forming.fit_coupon import CouponFit
+    from geomdrap.forming.fit_coupon import CouponFit, FittedCurve
 
 UNITS = {"shear": "shear in the middle [deg]"}
 
@@ -27,19 +27,27 @@ def figure_of(fits: Mapping[str, CouponFit], verdict: CurveVerdict | None) -> An
     from matplotlib.figure import Figure
 
     first = next(iter(fits.values()))
-    kinds = ["force" if c.startswith("force") else c for c in first.measured]
-    kinds = list(dict.fromkeys(kinds))
-    figure = Figure(figsize=(6.0 * len(kinds) + 6.5, 5.4), dpi=110, facecolor=palette.PAPER, layout="constrained")
-    *plots, right = figure.subplots(1, len(kinds) + 1)
-    for axes, kind in zip(plots, kinds, strict=True):
-        _curves(axes, kind, fits)
+    panels = [(n, kind) for n, curve in enumerate(first.curves) for kind in _kinds(curve)]
+    figure = Figure(figsize=(6.0 * len(panels) + 6.5, 5.4), dpi=110, facecolor=palette.PAPER, layout="constrained")
+    *plots, right = figure.subplots(1, len(panels) + 1)
+    for axes, (number, kind) in zip(plots, panels, strict=True):
+        _curves(axes, kind, {series: fit.curves[number] for series, fit in fits.items()})
+        if len(first.curves) > 1:
+            axes.set_title(first.curves[number].label, fontsize=9.5, color=palette.INK)
     if verdict is None:
         _parameters(right, fits)
     else:
         _errors(right, verdict)
     lacks = "" if verdict is None else f"; what it lacks: {_lack(verdict)}"
-    figure.suptitle(f"{first.test} test, fitted{lacks}", fontsize=12, color=palette.INK)
+    tests = "tests, one cloth fitted to all" if len(first.curves) > 1 else "test, fitted"
+    named = " and ".join(dict.fromkeys(curve.test for curve in first.curves))
+    figure.suptitle(f"{named} {tests}{lacks}", fontsize=12, color=palette.INK)
     return figure
+
+
+def _kinds(curve: FittedCurve) -> list[str]:
+    """Kinds of readings: both forces of a biaxial test are one."""
+    return list(dict.fromkeys("force" if c.startswith("force") else c for c in curve.measured))
 
 
 def _lack(verdict: CurveVerdict) -> str:
@@ -47,7 +55,8 @@ def _lack(verdict: CurveVerdict) -> str:
     return f"ambiguous, {named}" if verdict.verdict == "ambiguous" else verdict.verdict
 
 
-def _curves(axes: Any, kind: str, fits: Mapping[str, CouponFit]) -> None:
+def _curves(axes: Any, kind: str, fits: Mapping[str, FittedCurve]) -> None:
+    """Readings and what was fitted to them, by series."""
     number = 0
     for series, fit in fits.items():
         for column, values in fit.measured.items():
@@ -67,7 +76,7 @@ def _curves(axes: Any, kind: str, fits: Mapping[str, CouponFit]) -> None:
 
 def _parameters(axes: Any, fits: Mapping[str, CouponFit]) -> None:
     """Values over the first series' with their 95 % intervals."""
-    from geomdrap.forming.fit_coupon import UNITS as PARAMETER_UNITS
+    from geomdrap.forming.parameters import UNITS as PARAMETER_UNITS
 
     first, apart = next(iter(fits.values())).identified, min(0.2, 0.8 / len(fits))
     for number, (series, fit) in enumerate(fits.items()):

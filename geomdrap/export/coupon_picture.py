@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from geomdrap.forming.coupon import Coupon
 
 COLOURS = ("#1b4965", "#b3541e", "#5b2a86", "#2f7d4f", "#8a6d00", "#c8322b", "#5f7381", "#111111")
+FLAT = 2.5
+"""Times the median of the largest forces beyond which the largest would leave the other curves flat."""
+NO_TENSION = 1e-6
+"""N/mm of yarn tension that is rounding."""
 STYLES = ("-", "--", ":", "-.")
 NAMES = {"force": "force", "force_warp": "warp", "force_weft": "weft"}
 UNITS = {"angle": "°", "speed": " mm/min", "undulation": ""}
@@ -33,7 +37,7 @@ def figure_of(coupons: Sequence[Coupon]) -> Any:
     force, shear, warp, weft = figure.subplots(1, 4, width_ratios=(1.5, 1.2, 0.75, 0.75))
     _curves(force, shear, coupons)
     shown = coupons[-1]
-    _maps(figure, (warp, weft), shown)
+    _maps(figure, (warp, weft), shown, label_of(shown, coupons))
     figure.suptitle(_title(coupons), fontsize=12, color=palette.INK)
     return figure
 
@@ -87,12 +91,13 @@ def bare(axes: Any) -> None:
 
 
 def _top(coupons: Sequence[Coupon]) -> float:
-    """The end of the force scale: the largest force; of several cases the median of theirs, so that none is flat."""
+    """The end of the force scale: the largest force, or the median of the cases' where that is far below."""
     largest = [max(float(np.nanmax(f)) for f in c.result.forces.values()) for c in coupons]
-    return 1.05 * float(np.median(largest)) if max(largest) > 0.0 else 1.0
+    top, middle = max(largest), float(np.median(largest))
+    return 1.05 * (top if top < FLAT * middle else middle) if top > 0.0 else 1.0
 
 
-def _maps(figure: Any, both: Sequence[Any], coupon: Coupon) -> None:
+def _maps(figure: Any, both: Sequence[Any], coupon: Coupon, label: str) -> None:
     from matplotlib.collections import LineCollection
 
     from geomdrap.forming.specimen import tensions
@@ -100,14 +105,14 @@ def _maps(figure: Any, both: Sequence[Any], coupon: Coupon) -> None:
     ends, tension, family = tensions(coupon.result)
     for number, (axes, name) in enumerate(zip(both, ("warp", "weft"), strict=True)):
         mine = family == number
-        top = max(float(np.max(tension[mine], initial=0.0)), 1e-9)
+        top = float(np.max(tension[mine], initial=0.0))
         lines = LineCollection(ends[mine][:, :, :2], cmap="viridis_r", linewidths=1.4)
         lines.set_array(tension[mine])
-        lines.set_clim(0.0, top)
+        lines.set_clim(0.0, top if top > NO_TENSION else 1.0)
         axes.add_collection(lines)
         axes.autoscale_view()
         axes.set_aspect("equal")
         axes.set_axis_off()
-        at = f"{coupon.result.displacement[-1]:.3g} mm"
+        at = ", ".join(w for w in (f"{coupon.result.displacement[-1]:.3g} mm", label) if w)
         axes.set_title(f"tension, {name}\nat {at} [N/mm]", fontsize=9, color=palette.INK)
         figure.colorbar(lines, ax=axes, orientation="horizontal", shrink=0.85, pad=0.02).ax.tick_params(labelsize=8)

@@ -87,20 +87,22 @@ def meet(tool: NDArray, point: NDArray, velocity: NDArray, step: float, push: ND
     )
     if depth >= 0.0:
         return False
-    normal = np.array((nx, ny, nz))
     out = -depth / step
-    slide = velocity - tool[VX : VZ + 1]
-    slide -= normal * (slide @ normal)
-    speed = math.sqrt(slide @ slide)
+    push[0], push[1], push[2] = nx * out, ny * out, nz * out
+    sx, sy, sz = velocity[0] - tool[VX], velocity[1] - tool[VY], velocity[2] - tool[VZ]
+    along = sx * nx + sy * ny + sz * nz
+    sx, sy, sz = sx - along * nx, sy - along * ny, sz - along * nz
+    speed = math.sqrt(sx * sx + sy * sy + sz * sz)
     if speed > 0.0:
-        drag[:] = slide * (-min(tool[FRICTION] * out, speed) / speed)
-    push[:] = normal * out
-    velocity += push + drag
+        share = -min(tool[FRICTION] * out, speed) / speed
+        drag[0], drag[1], drag[2] = share * sx, share * sy, share * sz
+    for c in range(3):
+        velocity[c] += push[c] + drag[c]
     depth, nx, ny, nz = gap(
         tool, point[0] + step * velocity[0], point[1] + step * velocity[1], point[2] + step * velocity[2]
     )
     if depth < 0.0:  # friction has pulled it back into a curved tool
-        normal = np.array((nx, ny, nz))
-        push += normal * (-depth / step)
-        velocity += normal * (-depth / step)
+        out = -depth / step
+        push[0], push[1], push[2] = push[0] + nx * out, push[1] + ny * out, push[2] + nz * out
+        velocity[0], velocity[1], velocity[2] = velocity[0] + nx * out, velocity[1] + ny * out, velocity[2] + nz * out
     return True

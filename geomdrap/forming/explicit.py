@@ -26,20 +26,20 @@ def advance(
     steps: int, step: float, damping: float, x: NDArray, v: NDArray, f: NDArray, mass: NDArray, free: NDArray,
     load: NDArray, flow: NDArray, driven: NDArray, target: NDArray, corners: NDArray, shape: NDArray,
     history: NDArray, law: NDArray, keep: NDArray, take: NDArray, ends: NDArray, truss_law: NDArray, tools: NDArray,
-    impulse: NDArray, reaction: NDArray, works: NDArray, scratch: NDArray,
+    impulse: NDArray, reaction: NDArray, works: NDArray, before: NDArray, scratch: NDArray,
 ) -> None:  # fmt: skip
     """Take ``steps`` steps of ``step`` s.
 
     ``x``, ``v``, ``f`` (3n,): positions, velocities half a step before, forces of the fabric at ``x``; ``load`` (3n,)
     N; ``flow`` (3n,) mm/s: velocities that are not damped; ``driven`` (d,) nodes go straight to ``target`` (d, 3).
     ``reaction`` (d, 3) and ``impulse`` (t, 3): forces of the grips on the fabric summed over the steps, N, and
-    momentum from the tools, N s. ``works`` (WORKS,) N mm.
+    momentum from the tools, N s. ``works`` (WORKS,) N mm. ``before`` (3n,): forces before the last step.
     """
     pace = np.empty_like(target)
     for k in range(driven.shape[0]):
         for c in range(3):
             pace[k, c] = (target[k, c] - x[3 * driven[k] + c]) / (steps * step)
-    for _ in range(steps):
+    for number in range(steps):
         for t in range(tools.shape[0]):
             tools[t, PX] += step * tools[t, VX]
             tools[t, PY] += step * tools[t, VY]
@@ -52,6 +52,8 @@ def advance(
                 x[at] += step * pace[k, c]
                 works[GRIPS] -= 0.5 * step * f[at] * v[at]
                 works[INTERNAL] -= 0.5 * step * f[at] * v[at]
+        if number == steps - 1:
+            before[:] = f
         f[:] = 0.0
         membrane_forces(x, f, corners, shape, history, law, keep, take, scratch)
         truss_forces(x, f, ends, truss_law, scratch)

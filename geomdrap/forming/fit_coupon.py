@@ -1,69 +1,73 @@
-"""Fit the cloth of a test specimen to its measured curves, and say which further test would tell more."""
+"""Fit the cloth of one or several test specimens to their measured curves, and say which further test would help."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geomdrap.errors import FormingError
-from geomdrap.forming.cloth import Cloth, changed
-from geomdrap.forming.coupon import Coupon, bias_extension, biaxial, picture_frame, uniaxial, usual_displacement
-from geomdrap.forming.held import Held
-from geomdrap.forming.identify import Curves, Identified, identify, slopes_of, with_more
+from geomdrap.forming.cloth import Cloth
+from geomdrap.forming.coupon import enough_steps
+from geomdrap.forming.further import UNNAMED, Advice, Made, advise, where_read
+from geomdrap.forming.held import Held, specimen_of
+from geomdrap.forming.identify import Curves, Identified, Simulate, check_enough, identify
+from geomdrap.forming.parameters import TESTS, fitted_names, start_of, with_values
+from geomdrap.forming.simulated import held_run, usual
+from geomdrap.forming.starts import are_alike, cost, minima
 
 Array = NDArray[np.float64]
+Say = Callable[[str], None]
 
-TESTS = ("uniaxial", "bias-extension", "picture-frame", "biaxial")
-UNITS = {
-    "fibre-modulus": "MPa",
-    "warp-modulus": "MPa",
-    "weft-modulus": "MPa",
-    "resin-modulus": "MPa",
-    "undulation": "",
-}
-PARAMETERS = {
-    "uniaxial": ("fibre-modulus", "undulation", "resin-modulus"),
-    "bias-extension": ("fibre-modulus", "resin-modulus"),
-    "picture-frame": ("resin-modulus",),
-    "biaxial": ("warp-modulus", "weft-modulus", "undulation", "resin-modulus"),
-}
-"""What each test can show, and what is fitted unless told otherwise."""
-FURTHER: dict[str, tuple[tuple[str, dict[str, Any]], ...]] = {
-    "uniaxial": tuple((f"uniaxial at {a:g} degrees", {"angle": a}) for a in (0.0, 15.0, 30.0, 45.0)),
-    "bias-extension": (),
-    "picture-frame": (),
-    "biaxial": tuple((f"biaxial at a ratio of {r:g}", {"ratio": r}) for r in (0.0, 0.5, 2.0)),
-}
-"""Tests that may be made on top: their name, and the setting that differs."""
-CELLS = 10
-"""Cells across in the runs of a fit: four times faster than the usual mesh, and forces within a percent of it."""
-BEYOND = 1.0 + 1e-9
-"""Runs go so far beyond the last reading, since rounding must not leave it outside of them."""
+COARSE = {"uniaxial": 4, "bias-extension": 4, "biaxial": 6}
+"""Cells across in the runs that look for a start."""
+HASTY, MOST = 0.5, 12_000
+"""Their steps over those of a slow run, and the most of them: a per cent or so of the energy is kinetic then."""
 
 
 @dataclass(frozen=True, eq=False)
-class Advice:
-    """A further test and the standard deviations (k,) that the parameters would then have."""
+class Measured:
+    """A measured ``test``: ``readings`` by column (one series of `read_test`), ``settings`` that it was made with."""
 
     test: str
-    sigma: Array
+    readings: Mapping[str, Array]
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class FittedCurve:
+    """A test of a fit: ``measured`` and ``fitted`` columns at ``displacement`` (n,) mm; ``rms`` of each column."""
+
+    test: str
+    settings: dict[str, Any]
+    displacement: Array
+    measured: dict[str, Array]
+    fitted: dict[str, Array]
+    rms: dict[str, float]
+
+    @property
+    def label(self) -> str:
+        """The test in words."""
+        units = {"angle": "{:g} deg", "ratio": "ratio {:g}"}
+        shown = {k: self.settings.get(k, v) for k, v in UNNAMED.get(self.test, {}).items()}
+        return ", ".join([self.test, *(units[k].format(v) for k, v in shown.items())])
 
 
 @dataclass(frozen=True, eq=False)
 class CouponFit:
-    """A fitted test: ``measured`` and ``fitted`` columns at ``displacement`` (n,) mm, and the parameters."""
+    """Fitted tests: their ``curves``, the ``cloth`` and its ``identified`` parameters, further tests that would help.
 
-    test: str
+    ``rivals``: other values that fit about as well, from other starts.
+    """
+
+    curves: tuple[FittedCurve, ...]
     cloth: Cloth
-    displacement: Array
-    measured: dict[str, Array]
-    fitted: dict[str, Array]
     identified: Identified
-    advice: tuple[Advice, ...]
+    advice: tuple[Advice, ...] = ()
+    rivals: tuple[dict[str, float], ...] = ()
 
 
 def fit_coupon(
@@ -72,43 +76,110 @@ def fit_coupon(
     cloth: Cloth,
     settings: Mapping[str, Any] | None = None,
     names: tuple[str, ...] | None = None,
-    progress: Callable[[int], None] | None = None,
+    progress: Say | None = None,
 ) -> CouponFit:
-    """Fit ``names`` of ``cloth`` to ``readings`` (see `read_test`, one series) of ``test``.
+    """Fit ``names`` of ``cloth`` to ``readings`` of one ``test``; see `fit_coupons`."""
+    return fit_coupons([Measured(test, readings, settings or {})], cloth, names, progress)
 
-    ``settings`` are those of the test (angle, speed, length, …), ``names`` None: what the test and its readings can
-    show. FormingError where the readings do not suit the test, or a parameter is not one that it shows.
+
+def fit_coupons(
+    tests: Sequence[Measured], cloth: Cloth, names: tuple[str, ...] | None = None, progress: Say | None = None
+) -> CouponFit:
+    """Fit ``names`` of one ``cloth`` to all ``tests`` at once.
+
+    ``names`` None: what the tests and their readings can show. The fit starts at the best of what fits on a coarse
+    mesh come to, from the given cloth and from places scattered about it. ``progress`` is told in words. FormingError
+    where readings do not suit their test, or a parameter is not one that the tests show.
     """
-    measured = _usable(test, readings)
-    chosen = names or _shown(test, measured)
-    _check_names(test, chosen, measured)
-    displacement = readings["displacement"]
-    start = {name: _start(cloth, name) for name in chosen}
-
-    def simulation(values: Mapping[str, float], **other: Any) -> Callable[[dict[str, float]], Curves]:
-        asked = {**_usual(test), **dict(settings or {}), **other}
-        held = Held(test, asked, with_values(cloth, values))
-        where = _reached(displacement, asked) if "angle" in other else displacement
-        return lambda v: _held_run(held, with_values(cloth, v), where, tuple(measured))
-
-    found = identify(simulation(start), measured, start, progress)
-    advice = _advice(test, found, simulation, dict(settings or {}))
-    values = dict(zip(found.names, found.values.tolist(), strict=True))
-    return CouponFit(test, with_values(cloth, values), displacement, measured, dict(found.curves), found, advice)
-
-
-def _held_run(held: Held, cloth: Cloth, displacement: Array, columns: tuple[str, ...]) -> Curves:
-    """Columns of a run with masses and steps held; NaN for a cloth that is out of all proportion."""
-    if not held.takes(cloth):
-        return {c: np.full(len(displacement), np.nan) for c in columns}
-    return predict(held.test, cloth, held.settings, displacement, columns)
+    joint = _Joint(tests, cloth)
+    chosen = fitted_names(
+        [(t.test, columns) for t, columns in zip(joint.tests, joint.columns, strict=True)], names
+    )
+    start = {name: start_of(cloth, name) for name in chosen}
+    check_enough(joint.measured, chosen)
+    fits = [
+        identify(joint.simulation(values), joint.measured, values, _counted(progress))
+        for values in joint.starts(start, progress)
+    ]
+    fits.sort(key=lambda one: cost(one.curves, joint.measured))
+    best, *others = fits
+    rivals = tuple(other.named for other in others if are_alike(best, other, joint.measured))
+    made = [(t.test, t.settings) for t in joint.tests]
+    advice = advise(best, made, lambda number, other: joint.further(best, number, other))
+    return CouponFit(joint.fitted(best), with_values(cloth, best.named), best, advice, rivals)
 
 
-def _reached(displacement: Array, settings: Mapping[str, Any]) -> Array:
-    """Displacements (n,) mm at another angle: no further than a single run goes, or yarns would break."""
-    usual = {key: settings[key] for key in ("length", "width") if key in settings}
-    furthest = usual_displacement(settings["angle"], **usual)
-    return np.asarray(displacement * min(1.0, furthest / float(displacement.max())))
+def _counted(progress: Say | None) -> Callable[[int], None] | None:
+    return None if progress is None else (lambda runs: progress(f"{runs} runs"))
+
+
+class _Joint:
+    """Tests as one: the columns of the second and later ones are named with their number."""
+
+    def __init__(self, tests: Sequence[Measured], cloth: Cloth):
+        self.tests, self.cloth = list(tests), cloth
+        usable = [_usable(t.test, t.readings) for t in tests]
+        self.columns = [tuple(columns) for columns in usable]
+        self.measured = {
+            _key(c, number): v for number, columns in enumerate(usable) for c, v in columns.items()
+        }
+
+    def starts(self, start: Mapping[str, float], progress: Say | None) -> list[dict[str, float]]:
+        """Where fits start: at minima of a coarse mesh, and at ``start`` alone where the tests have no mesh."""
+        if all(t.test not in COARSE for t in self.tests):
+            return [dict(start)]
+        if progress:
+            progress("looking for a start on a coarse mesh")
+        return minima(lambda values: self.simulation(values, is_coarse=True), self.measured, start)
+
+    def simulation(self, values: Mapping[str, float], is_coarse: bool = False) -> Simulate:
+        """All tests with masses and steps that are held, at first for ``values``."""
+        cloth = with_values(self.cloth, values)
+        held = [Held(t.test, self._settings(t, cloth, is_coarse), cloth) for t in self.tests]
+
+        def simulate(v: dict[str, float]) -> Curves:
+            made = with_values(self.cloth, v)
+            curves: dict[str, Array] = {}
+            for number, (one, test) in enumerate(zip(held, self.tests, strict=True)):
+                run = held_run(one, made, test.readings["displacement"], self.columns[number])
+                curves |= {_key(c, number): values for c, values in run.items()}
+            return curves
+
+        return simulate
+
+    def _settings(self, test: Measured, cloth: Cloth, is_coarse: bool) -> dict[str, Any]:
+        asked = {**usual(test.test), **test.settings}
+        if not is_coarse or test.test not in COARSE:
+            return asked
+        asked["cells"] = min(asked.get("cells", 20), COARSE[test.test])
+        few = min(MOST, HASTY * enough_steps(specimen_of(test.test, asked, cloth)))
+        asked["steps"] = int(min(asked.get("steps") or few, few))
+        return asked
+
+    def further(self, found: Identified, number: int, other: Made) -> Simulate:
+        """The simulation of a further test, made as the test ``number`` was but for what differs."""
+        test, differs = other
+        asked = {**usual(test), **self.tests[number].settings, **differs}
+        held = Held(test, asked, with_values(self.cloth, found.named))
+        where = where_read(self.tests[number].readings["displacement"], test, asked)
+        columns = ("force",) if test != "biaxial" else ("force_warp", "force_weft")
+        return lambda v: held_run(held, with_values(self.cloth, v), where, columns)
+
+    def fitted(self, found: Identified) -> tuple[FittedCurve, ...]:
+        """Each test beside what was fitted to it."""
+        return tuple(self._fitted(found, number) for number in range(len(self.tests)))
+
+    def _fitted(self, found: Identified, number: int) -> FittedCurve:
+        test, columns = self.tests[number], self.columns[number]
+        measured, fitted = (
+            {c: curves[_key(c, number)] for c in columns} for curves in (self.measured, found.curves)
+        )
+        rms = {c: found.rms[_key(c, number)] for c in columns}
+        return FittedCurve(test.test, dict(test.settings), test.readings["displacement"], measured, fitted, rms)
+
+
+def _key(column: str, number: int) -> str:
+    return column if number == 0 else f"{column} {number + 1}"
 
 
 def _usable(test: str, readings: Mapping[str, Array]) -> dict[str, Array]:
@@ -122,92 +193,3 @@ def _usable(test: str, readings: Mapping[str, Array]) -> dict[str, Array]:
     if not found:
         raise FormingError(f"a {test} test is fitted by {' or '.join(gives)}; the table has none of them")
     return found
-
-
-def _shown(test: str, measured: Mapping[str, Array]) -> tuple[str, ...]:
-    """What the readings can show: shear alone depends only on how much stiffer the yarns are than the resin."""
-    forces = [c for c in measured if c != "shear"]
-    return PARAMETERS[test] if forces else ("fibre-modulus",)
-
-
-def _check_names(test: str, names: tuple[str, ...], measured: Mapping[str, Array]) -> None:
-    able = (*PARAMETERS[test], "undulation") if test == "bias-extension" else PARAMETERS[test]
-    for name in names:
-        if name not in able:
-            raise FormingError(f"a {test} test does not show {name}; choose from {', '.join(able)}")
-    if set(measured) == {"shear"} and {"fibre-modulus", "resin-modulus"} <= set(names):
-        raise FormingError("shear alone shows only the ratio of fibre-modulus to resin-modulus; fit one of them")
-
-
-def _start(cloth: Cloth, name: str) -> float:
-    values = {
-        "fibre-modulus": cloth.warp.modulus,
-        "warp-modulus": cloth.warp.modulus,
-        "weft-modulus": cloth.weft.modulus,
-        "resin-modulus": cloth.resin.modulus,
-        "undulation": cloth.warp.undulation or 0.005,
-    }
-    if not values[name] > 0.0:
-        raise FormingError(f"a fit of {name} must start above 0; got {values[name]:g}")
-    return values[name]
-
-
-def with_values(cloth: Cloth, values: Mapping[str, float]) -> Cloth:
-    """``cloth`` with parameters by name."""
-    both = {"undulation": values.get("undulation"), "modulus": values.get("fibre-modulus")}
-    yarns = {side: changed(getattr(cloth, side), **{**both, **_own(values, side)}) for side in ("warp", "weft")}
-    return changed(cloth, resin=changed(cloth.resin, modulus=values.get("resin-modulus")), **yarns)
-
-
-def _own(values: Mapping[str, float], side: str) -> dict[str, float]:
-    return {"modulus": values[f"{side}-modulus"]} if f"{side}-modulus" in values else {}
-
-
-def predict(
-    test: str, cloth: Cloth, settings: Mapping[str, Any], displacement: Array, columns: tuple[str, ...]
-) -> dict[str, Array]:
-    """Columns (n,) of a simulated test at ``displacement`` (n,) mm; NaN beyond where it stopped."""
-    from scipy.interpolate import CubicSpline
-
-    furthest = float(np.max(displacement)) * BEYOND
-    pulled = _simulated(test, cloth, settings, furthest).result
-    given = {**pulled.forces, "shear": pulled.shear}
-    if len(pulled.displacement) < 2:
-        return {c: np.full(len(displacement), np.nan) for c in columns}
-    return {
-        c: np.asarray(CubicSpline(pulled.displacement, given[c], extrapolate=False)(displacement)) for c in columns
-    }
-
-
-def _simulated(test: str, cloth: Cloth, settings: Mapping[str, Any], furthest: float) -> Coupon:
-    if test == "picture-frame":
-        side = settings.get("side", 100.0)
-        last = 90.0 - 2.0 * np.rad2deg(np.arccos(min(0.5 * furthest / side + np.sqrt(0.5), 1.0 - 1e-9)))
-        asked = {**settings, "shear": np.linspace(last / 40.0, last, 40).tolist(), "steps": 800}
-        return picture_frame(cloth, **asked)
-    asked = {**settings, "displacement": furthest}
-    if test == "biaxial":
-        return biaxial(cloth, **asked)
-    asked = {**_usual(test), **asked}
-    return uniaxial(cloth, **asked) if test == "uniaxial" else bias_extension(cloth, **asked)
-
-
-def _usual(test: str) -> dict[str, Any]:
-    """Settings of the runs of a fit, where they are not those of a single run."""
-    return {"cells": CELLS} if test in ("uniaxial", "bias-extension") else {}
-
-
-def _advice(
-    test: str, found: Identified, simulation: Callable[..., Any], settings: dict[str, Any]
-) -> tuple[Advice, ...]:
-    """What each further test would add, if some parameters are loose or confounded."""
-    if not (found.loose or found.confounded):
-        return ()
-    scatter = float(np.mean(list(found.scatter.values())))
-    given = []
-    for name, other in FURTHER[test]:
-        if all(settings.get(k) == v for k, v in other.items()):
-            continue
-        runs = simulation(dict(zip(found.names, found.values.tolist(), strict=True)), **other)
-        given.append(Advice(name, with_more(found, slopes_of(runs, found, scatter))))
-    return tuple(given)

@@ -7,6 +7,7 @@ from one cloth to the next: more than what a slope by differences is made of.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,10 @@ FINER = 2.0**0.5
 """Steps over those of a single run, to make up for the `MARGIN` of the masses."""
 WILD = 16.0
 """Times the stiffness that is held, or the square of the steps, from which a cloth is not run at all."""
+CRIMPED = 1.0
+"""Undulation beyond which no cloth is: yarns would be nearly three times as long as their cloth."""
+SOFT = 1e7
+"""Times the modulus of the resin from which on that of the yarns has nothing to do with it."""
 SIZES = ("length", "width", "angle", "ratio", "cells")
 """Settings that make the specimen; the others are those of its run."""
 
@@ -42,6 +47,7 @@ class Held:
 
     def __init__(self, test: str, settings: Mapping[str, Any], cloth: Cloth):
         self.test, self.given = test, dict(settings)
+        self._made = None if self.is_frame else specimen_of(test, settings, cloth)
         self._size(cloth)
 
     @property
@@ -59,6 +65,8 @@ class Held:
 
         ResizedError where it asks for more than is held, which has been enlarged then.
         """
+        if is_absurd(cloth):
+            return False
         need = 0.0 if self.is_frame else max(self._stiffness(cloth), self._slowness(cloth))
         if need > WILD:
             return False
@@ -90,8 +98,20 @@ class Held:
         return enough_steps(self._specimen(cloth))
 
     def _specimen(self, cloth: Cloth) -> Specimen:
-        sizes = {key: value for key, value in self.given.items() if key in SIZES}
-        return biaxial_specimen(cloth, **sizes) if self.test == "biaxial" else strip_specimen(cloth, **sizes)
+        assert self._made is not None  # a picture frame asks for none
+        return replace(self._made, cloth=cloth)
+
+
+def is_absurd(cloth: Cloth) -> bool:
+    """Whether values lie where no cloth is, and where a fit would only lose its way."""
+    stiffest = max(f.modulus for f in cloth.families)
+    return max(f.undulation for f in cloth.families) > CRIMPED or stiffest > SOFT * cloth.resin.modulus > 0.0
+
+
+def specimen_of(test: str, settings: Mapping[str, Any], cloth: Cloth) -> Specimen:
+    """The specimen of a ``test`` other than the picture frame; settings of its run are left alone."""
+    sizes = {key: value for key, value in settings.items() if key in SIZES}
+    return biaxial_specimen(cloth, **sizes) if test == "biaxial" else strip_specimen(cloth, **sizes)
 
 
 def stiffer(cloth: Cloth, times: float) -> Cloth:

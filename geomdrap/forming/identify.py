@@ -84,6 +84,11 @@ class Identified:
         return np.stack([self.values / spread, self.values * spread], axis=1)
 
     @property
+    def named(self) -> dict[str, float]:
+        """The values by name."""
+        return dict(zip(self.names, self.values.tolist(), strict=True))
+
+    @property
     def confounded(self) -> list[tuple[str, str, float]]:
         """Pairs of parameters that these readings do not tell apart, with their correlation."""
         size = len(self.names)
@@ -113,19 +118,19 @@ def identify(
     measured: Curves,
     start: Mapping[str, float],
     progress: Callable[[int], None] | None = None,
+    enough: float = ENOUGH,
 ) -> Identified:
     """Fit the parameters ``start`` so that ``simulate`` gives ``measured``: (n,) by column, NaN where not read.
 
     Residuals are taken over the sizes of the readings (see `scales`), so that forces and angles can be fitted
     together. After `MOST_RUNS` simulations per parameter, those for slopes among them, the fit stops at the best
-    values so far, not ``converged``. FormingError where there are fewer readings than parameters, or none that is not
+    values so far, not ``converged``; it ends where a step would lower the cost by less than the share ``enough``.
+    FormingError where there are fewer readings than parameters, or none that is not
     zero, or where the simulation at the values that were found lacks a reading.
     """
-    names, size = tuple(start), scales(measured)
+    names, size = tuple(start), check_enough(measured, tuple(start))
     used = {c: np.isfinite(measured[c]) for c in measured}
-    if sum(int(u.sum()) for u in used.values()) <= len(names):
-        raise FormingError(f"there are too few readings for {len(names)} parameters; fit fewer, or measure more")
-    search = _Search(simulate, measured, start, size, used, progress)
+    search = _Search(simulate, measured, start, size, used, progress, enough)
     place, converged = search.run()
     curves = search.curves(place)
     _check_complete(curves, used)
@@ -144,6 +149,13 @@ def identify(
     )  # fmt: skip
 
 
+def check_enough(measured: Curves, names: tuple[str, ...]) -> dict[str, Array]:
+    """The sizes of the readings (see `scales`); FormingError where there are too few of them for ``names``."""
+    if sum(int(np.isfinite(v).sum()) for v in measured.values()) <= len(names):
+        raise FormingError(f"there are too few readings for {len(names)} parameters; fit fewer, or measure more")
+    return scales(measured)
+
+
 class _SpentError(Exception):
     """All simulations that a fit may make are made."""
 
@@ -159,7 +171,9 @@ class _Search:
         size: Curves,
         used: Mapping[str, NDArray[np.bool_]],
         progress: Callable[[int], None] | None,
+        enough: float,
     ):
+        self.enough = enough
         self.simulate, self.measured, self.size, self.used, self.progress = simulate, measured, size, used, progress
         self.names, self.begin = tuple(start), np.array(list(start.values()))
         self.most: float = 0
@@ -186,8 +200,9 @@ class _Search:
 
         try:
             found = leastsq(
-                self.residuals, self._place, Dfun=self.slopes, full_output=True, xtol=1e-5, ftol=ENOUGH, factor=FIRST
-            )
+                self.residuals, self._place, Dfun=self.slopes, full_output=True, xtol=1e-5, ftol=self.enough,
+                factor=FIRST,
+            )  # fmt: skip
             return np.asarray(found[0]), found[-1] in (1, 2, 3, 4)
         except _SpentError:
             return self.best(), False

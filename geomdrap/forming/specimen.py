@@ -22,6 +22,8 @@ DAMPING = 48.0
 """Mass damping times the duration of a run: vibrations fade within a twentieth of it."""
 MEMORY = 0.02
 """Share of the duration over which the flow is a mean: longer than vibrations, shorter than what a curve shows."""
+BREAKS, STIFF = 0.05, 10_000.0
+"""Strain beyond the crimp by which yarns with a modulus from so many MPa on have broken: aramid does at 0.03."""
 SLOW = 0.02
 """Share of kinetic energy, from a quarter of the way on, beyond which a run is no longer a slow one."""
 
@@ -79,6 +81,11 @@ class Pulled:
         if self.kinetic_share > SLOW:
             share = f"{100 * self.kinetic_share:.1f} %" if self.kinetic_share < 1.0 else "more than half"
             said.append(f"{share} of the energy is kinetic, so that inertia shows in the forces; take more steps")
+        if (strain := yarn_strain(self)) > BREAKS:
+            said.append(
+                f"many yarns are strained by {100 * strain:.2g} % and more beyond their crimp at the end: no such "
+                "yarn bears that; pull less far"
+            )
         return said
 
 
@@ -151,6 +158,20 @@ def middle_shear(sheet: Sheet, points: Array) -> float:
     weights = (sheet.areas * near)[:, None, None]
     mean = (gradients(sheet, points) * weights).sum(axis=0) / weights.sum()
     return float(shear_of(mean))
+
+
+def yarn_strain(pulled: Pulled) -> float:
+    """Strain beyond the crimp that a tenth of the stiff yarns of a family reach at the end: stress over modulus.
+
+    Not the largest: that at the corner of a clamp grows as the mesh is made finer.
+    """
+    _, tension, family = tensions(pulled)
+    cloth, most = pulled.specimen.cloth, 0.0
+    for number, fibre in enumerate(cloth.families):
+        if fibre.modulus >= STIFF and fibre.share > 0.0:
+            high = float(np.percentile(tension[family == number], 90.0))
+            most = max(most, high / (fibre.modulus * fibre.share * cloth.thickness))
+    return most
 
 
 def tensions(pulled: Pulled) -> tuple[Array, Array, Whole]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,8 @@ class State:
     of the resin (see `membrane`); ``time`` s; ``works`` (see `explicit`) N mm; ``relaxed`` N mm, dissipated by the
     resin, and ``loss`` N mm/s, the rate of it; ``tools`` packed. ``reaction`` (d, 3) N and ``impulse`` (t, 3) N s are
     those of the last call of `take_steps`: mean force of each driven node on the fabric, momentum from each tool.
-    ``flow`` (3n,) mm/s: velocities against which motion is damped.
+    ``flow`` (3n,) mm/s: velocities against which motion is damped. ``before`` (3n,) N: ``f`` a step before; ``load``
+    (3n,) N: what acts on the nodes besides.
     """
 
     x: Array
@@ -38,6 +39,8 @@ class State:
     impulse: Array
     scratch: Array
     flow: Array
+    before: Array
+    load: Array
     time: float = 0.0
     relaxed: float = 0.0
     loss: float = 0.0
@@ -65,12 +68,25 @@ def start(model: Model, velocity: Array | None = None, tools: tuple[Tool, ...] =
         impulse=np.zeros((len(tools), 3)),
         scratch=np.zeros(WORK_ROWS * WIDTH),
         flow=np.zeros(3 * count),
+        before=np.zeros(3 * count),
+        load=np.zeros(3 * count),
     )
     add_forces(model, state)
+    state.before[:] = state.f
     if velocity is not None:  # half a step before
         state.v[:] = np.ravel(velocity) - 0.5 * model.step * state.f / np.repeat(model.mass, 3)
         state.v.reshape(-1, 3)[model.driven] = 0.0
+        state.before[:] = _forces_before(model, state)
     return state
+
+
+def _forces_before(model: Model, state: State) -> Array:
+    """Forces (3n,) N of the fabric a step before ``state``, which moved then as it does now."""
+    earlier = replace(
+        state, x=state.x - model.step * state.v, f=np.zeros_like(state.f), history=state.history.copy()
+    )
+    add_forces(model, earlier)
+    return earlier.f
 
 
 def add_forces(model: Model, state: State) -> None:
@@ -90,14 +106,16 @@ def take_steps(
     ``load`` (n, 3) N acts on the nodes meanwhile; ``state.flow`` is not damped.
     """
     goal = state.points[model.driven] if target is None else np.ascontiguousarray(target, dtype=np.float64)
-    force = np.zeros_like(state.x) if load is None else np.ascontiguousarray(load, dtype=np.float64).ravel()
+    state.load[:] = 0.0 if load is None else np.ravel(load)
     state.reaction[:] = 0.0
     state.impulse[:] = 0.0
     advance(
-        steps, model.step, model.damping, state.x, state.v, state.f, model.mass, model.free, force, state.flow,
+        steps, model.step, model.damping, state.x, state.v, state.f, model.mass, model.free, state.load,
+        state.flow,
         model.driven, goal,
         model.corners, model.shape, state.history, model.law, model.keep, model.take, model.ends, model.truss_law,
-        state.tools, state.impulse, state.reaction, state.works, state.scratch,
+        state.tools, state.impulse, state.reaction, state.works, state.before,
+        state.scratch,
     )  # fmt: skip
     state.reaction /= steps
     state.time += steps * model.step

@@ -124,28 +124,58 @@ def test_a_list_that_is_not_numbers_is_refused(error_of: Callable[..., str]) -> 
     assert "not a finite number, or several with commas" in error_of("coupon", "picture-frame", "--shear", "10,x")
 
 
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--speed", "20,-1"), "a speed must be above 0 mm/min; got -1"),
+        (("--angle", "45,100"), "an angle lies between 0 and 90 degrees; got 100"),
+        (("--undulation", "0,-1"), "the undulation must be 0 (a strain) or more; got -1"),
+    ],
+)
+def test_a_list_is_checked_before_its_first_case_is_pulled(
+    error_of: Callable[..., str], monkeypatch: pytest.MonkeyPatch, options: tuple, said: str
+) -> None:
+    def never(*_: object, **__: object) -> None:
+        raise AssertionError("a case was pulled")
+
+    monkeypatch.setattr("geomdrap.forming.coupon.uniaxial", never)
+    assert said in error_of("coupon", "uniaxial", *options)
+
+
+def test_yarns_that_would_have_broken_are_warned_of(run: Callable[..., Result]) -> None:
+    strip = ("coupon", "uniaxial", "--angle", 0, "--cells", 2, "--steps", 4000, "--frames", 8, "--outputs", "none")
+    assert "beyond their crimp at the end: no such yarn bears that" in run(*strip, "--displacement", 30).stderr
+    assert "crimp" not in run(*strip, "--displacement", 3).stderr
+
+
 def test_an_unknown_test_is_refused(error_of: Callable[..., str]) -> None:
     assert "torsion" in error_of("coupon", "torsion")
 
 
 def test_choices_on_the_command_line_are_those_of_the_library() -> None:
-    from geomdrap.cli import coupon_fit, coupon_options
+    from geomdrap.cli import coupon_also, coupon_fit, coupon_options
     from geomdrap.export.coupon_fit_outputs import FIT_OUTPUTS
     from geomdrap.export.coupon_outputs import COUPON_OUTPUTS
-    from geomdrap.forming import RELAXATIONS, cloth, fit_coupon
+    from geomdrap.forming import RELAXATIONS, cloth, parameters
 
     assert set(coupon_options.RELAXATIONS) == set(RELAXATIONS)
     assert coupon_options.THICKNESS_RULES == cloth.THICKNESS_RULES
     assert coupon_options.STRAIN_FORMS == cloth.STRAIN_FORMS
     assert tuple(COUPON_OUTPUTS) == coupon_options.COUPON_OUTPUTS
     assert tuple(FIT_OUTPUTS) == coupon_fit.FIT_OUTPUTS
-    assert coupon_fit.TESTS == fit_coupon.TESTS
-    assert set(coupon_fit.FITTED) == set(fit_coupon.UNITS)
-    assert set(coupon_fit.SETTINGS) == set(fit_coupon.TESTS)
+    assert coupon_also.TESTS == parameters.TESTS
+    assert set(coupon_fit.FITTED) == set(parameters.UNITS)
+    assert set(coupon_also.SETTINGS) == set(parameters.TESTS)
 
 
 def _shear_table(path: Path, text: str) -> None:
     path.write_text("series,displacement,force,shear\n" + text, encoding="utf-8")
+
+
+@pytest.fixture
+def one_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fits begin at the given cloth: what is looked at here does not depend on where they begin."""
+    monkeypatch.setattr("geomdrap.forming.fit_coupon.minima", lambda _, __, start: [start])
 
 
 @pytest.fixture
@@ -155,7 +185,7 @@ def no_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     def never(*_: object) -> None:
         raise AssertionError("the fit has begun")
 
-    monkeypatch.setattr("geomdrap.forming.fit_coupon.fit_coupon", never)
+    monkeypatch.setattr("geomdrap.forming.fit_coupon.fit_coupons", never)
 
 
 @pytest.mark.usefixtures("no_fit")
@@ -180,6 +210,7 @@ def test_a_split_of_no_use_is_refused(error_of: Callable[..., str], tmp_path: Pa
     )
 
 
+@pytest.mark.usefixtures("one_start")
 @pytest.mark.parametrize(
     ("rows", "said"),
     [
@@ -195,6 +226,7 @@ def test_a_fit_without_a_verdict_says_why(run: Callable[..., Result], tmp_path: 
     assert "lacks" not in json.loads(result.stdout)
 
 
+@pytest.mark.usefixtures("one_start")
 def test_a_fit_is_kept_where_a_run_for_the_verdict_diverges(
     run: Callable[..., Result], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -229,10 +261,10 @@ def test_a_fit_that_started_over_says_so(
 
     from geomdrap.forming import fit_coupon
 
-    fit = fit_coupon.fit_coupon
+    fit = fit_coupon.fit_coupons
     monkeypatch.setattr(
         fit_coupon,
-        "fit_coupon",
+        "fit_coupons",
         lambda *arguments: replace(made := fit(*arguments), identified=replace(made.identified, resized=2)),
     )
     _frame_twin(tmp_path / "frame.csv")
@@ -255,7 +287,7 @@ def test_fitting_tells_how_many_runs_it_has_made(
 
 def _frame_twin(path: Path) -> None:
     from geomdrap.forming import Cloth, Resin
-    from geomdrap.forming.fit_coupon import predict
+    from geomdrap.forming.simulated import predict
 
     d = np.linspace(2.0, 40.0, 12)
     force = predict("picture-frame", Cloth(resin=Resin(modulus=30.0)), {}, d, ("force",))["force"]
@@ -311,3 +343,72 @@ def test_a_fit_that_cannot_be_is_refused(
 ) -> None:
     _frame_twin(tmp_path / "frame.csv")
     assert said in error_of("coupon", "fit", *arguments)
+
+
+def _strip_twin(path: Path, angle: float, furthest: float) -> None:
+    from geomdrap.forming import Cloth
+    from geomdrap.forming.simulated import predict
+
+    d = np.linspace(furthest / 12.0, furthest, 12)
+    force = predict("uniaxial", Cloth(), {"angle": angle, "cells": 2, "steps": 4000}, d, ("force",))["force"]
+    noisy = force * (1.0 + 0.01 * np.random.default_rng(0).normal(size=12))
+    path.write_text("displacement,force\n" + "".join(f"{a:.6f},{b:.6f}\n" for a, b in zip(d, noisy, strict=True)))
+
+
+@pytest.mark.usefixtures("one_start")
+def test_a_further_test_is_fitted_at_once_and_shown(run: Callable[..., Result], tmp_path: Path) -> None:
+    _strip_twin(tmp_path / "0.csv", 0.0, 3.0)
+    _frame_twin(tmp_path / "frame.csv")
+    options = ("--cells", 2, "--steps", 4000, "--angle", 0, "--fit", "fibre-modulus,resin-modulus")
+    result = run("coupon", "fit", "uniaxial", "0.csv", "--also", "picture-frame:frame.csv:side=100", *options)
+    assert "uniaxial, 0 deg, test: residual force " in result.stdout
+    assert "picture-frame, test: residual force " in result.stdout
+    document = json.loads((tmp_path / "fit" / "fit.json").read_text(encoding="utf-8"))
+    assert [one["test"] for one in document["tests"]] == ["uniaxial", "picture-frame"]
+    assert document["tests"][1]["settings"] == {"side": 100.0}
+    assert document["readings"] == 24
+    assert document["fits_as_well"] == []
+    assert document["parameters"]["resin-modulus"]["value"] == pytest.approx(30.0, rel=0.02)
+    assert document["parameters"]["fibre-modulus"]["value"] == pytest.approx(130_000.0, rel=0.05)
+    assert (tmp_path / "fit" / "fit.png").stat().st_size > 10_000
+
+
+@pytest.mark.usefixtures("no_fit")
+@pytest.mark.parametrize(
+    ("also", "said"),
+    [
+        ("frame.csv", "must begin with a test, uniaxial, bias-extension, picture-frame, biaxial"),
+        ("uniaxial", "names no file, as in uniaxial:FILE.csv"),
+        ("uniaxial:none.csv:angle=0", "none.csv does not exist"),
+        ("uniaxial:frame.csv:side=3", "'side' is not a setting of a uniaxial test; choose from angle, speed"),
+        ("uniaxial:frame.csv:angle=x", "'x' is not a number"),
+        ("uniaxial:frame.csv:cells=2.5", "cells is a whole number of 1 or more; got 2.5"),
+        ("bias-extension:many.csv", "many.csv holds the series a, b; with --also each file must hold one"),
+    ],
+)
+def test_a_further_test_that_cannot_be_is_refused(
+    error_of: Callable[..., str], tmp_path: Path, also: str, said: str
+) -> None:
+    _frame_twin(tmp_path / "frame.csv")
+    _shear_table(tmp_path / "many.csv", "a,1,9,1\nb,1,9,1\n")
+    assert said in error_of("coupon", "fit", "picture-frame", "frame.csv", "--also", also)
+
+
+def test_a_warning_leads_to_the_test_that_would_help() -> None:
+    from geomdrap.cli.coupon_fit_summary import warnings_of
+    from geomdrap.forming import Cloth
+    from geomdrap.forming.fit_coupon import CouponFit
+    from geomdrap.forming.further import Advice
+    from geomdrap.forming.identify import identify
+
+    x, rng = np.arange(1.0, 30.0), np.random.default_rng(0)
+    noisy = {"force": 6.0 * x * (1.0 + 0.01 * rng.normal(size=len(x)))}
+    found = identify(
+        lambda p: {"force": p["a"] * p["b"] * (x + 1e-3 * p["b"] * x**2)}, noisy, {"a": 1.0, "b": 2.0}
+    )
+    advice = Advice("uniaxial", {"angle": 0.0}, 0.01 * found.sigma)
+    said = warnings_of("pull", CouponFit((), Cloth(), found, (advice,), ({"a": 3.0, "b": 4.0},)))
+    assert "pull: other values fit about as well: a 3, b 4; only other readings can choose" in said
+    assert any("a and b are not told apart" in words for words in said)
+    assert said[-1].startswith("pull: a uniaxial at 0 degrees test on top would bring sigma of a from ")
+    assert said[-1].endswith("; fit both with --also uniaxial:FILE.csv:angle=0")

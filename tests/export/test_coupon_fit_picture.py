@@ -11,7 +11,7 @@ from geomdrap.criticism.curve import EFFECTS, Curve, pin_jointed
 from geomdrap.criticism.curve_verdict import judge_curves
 from geomdrap.export.coupon_fit_picture import figure_of, write
 from geomdrap.forming import Cloth
-from geomdrap.forming.fit_coupon import CouponFit
+from geomdrap.forming.fit_coupon import CouponFit, FittedCurve
 from geomdrap.forming.identify import identify
 
 D = np.linspace(1.0, 20.0, 9)
@@ -21,7 +21,8 @@ def _fit(seed: int) -> CouponFit:
     """A fit of a straight line, as quick as can be."""
     noisy = {"force": 3.0 * D * (1.0 + 0.01 * np.random.default_rng(seed).normal(size=len(D)))}
     found = identify(lambda p: {"force": p["resin-modulus"] * D}, noisy, {"resin-modulus": 1.0})
-    return CouponFit("uniaxial", Cloth(), D, noisy, dict(found.curves), found, ())
+    curve = FittedCurve("uniaxial", {}, D, noisy, dict(found.curves), found.rms)
+    return CouponFit((curve,), Cloth(), found)
 
 
 @pytest.mark.parametrize("judged", [False, True], ids=["parameters", "verdict"])

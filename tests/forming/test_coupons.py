@@ -90,23 +90,22 @@ def test_bias_extension_has_force_and_shear_of_the_inextensible_net() -> None:
 @pytest.mark.parametrize(
     ("angle", "cells", "rows"),
     [
-        (15.0, 5, ((1.0, 363.0), (2.0, 798.8), (4.0, 2286.7))),
+        (15.0, 5, ((1.0, 363.0), (2.0, 798.8), (4.0, 2286.7), (6.0, 6464.5))),
         (30.0, 8, ((5.0, 232.9), (10.0, 553.2), (20.0, 1982.3), (30.0, 9173.1))),
         (45.0, 8, ((10.0, 350.6), (20.0, 1017.9))),
     ],
 )
 def test_off_axis_forces_are_those_of_the_inextensible_net(angle: float, cells: int, rows: tuple) -> None:
-    """T7, with yarns fifty times stiffer than aramid: 1.5 %.
-
-    Not less, since the mesh is coarse, to keep the test short, and since nearer to the lock even such yarns stretch.
-    """
-    yarn = Fibre(modulus=6.5e6, undulation=0.0)
+    """T7, 1 %, with yarns two hundred times stiffer than aramid, since others stretch near the lock."""
+    yarn = Fibre(modulus=2.6e7, undulation=0.0)
     cloth, furthest = Cloth(yarn, yarn, Resin(relaxation=ELASTIC)), rows[-1][0]
     frames = 10 * round(furthest / rows[0][0])  # forces are means over a frame: short ones
     result = uniaxial(cloth, angle, 20.0, furthest, cells=cells, frames=frames).result
     for displacement, force in rows:
-        assert _shown(result, displacement)[0] == pytest.approx(force, rel=0.015)
-    assert result.balance_error < 1e-3
+        assert _shown(result, displacement)[0] == pytest.approx(force, rel=0.01)
+    first, *_ = result.run.frames
+    known = result.run.frames[frames // 10 :]  # at the first reading there is next to no energy
+    assert max(f.ledger.balance_error(first.ledger) for f in known) < 1e-3
 
 
 @pytest.mark.slow

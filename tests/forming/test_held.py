@@ -7,9 +7,10 @@ import pytest
 
 from geomdrap.forming import Cloth, Resin
 from geomdrap.forming.coupon import uniaxial
-from geomdrap.forming.fit_coupon import predict, with_values
 from geomdrap.forming.held import FINER, MARGIN, WILD, Held, stiffer, stiffer_of
 from geomdrap.forming.identify import ResizedError, identify
+from geomdrap.forming.parameters import with_values
+from geomdrap.forming.simulated import predict
 
 SMALL = {"cells": 4, "length": 60.0, "width": 30.0}
 
