@@ -16,7 +16,7 @@ Predict = Callable[[np.ndarray], np.ndarray]
 STEPS = 12  # most accepted or refused steps
 SMALL = 0.05  # of chi-square: a step that promises or gains less ends the fit
 LEAST_STEP = 1e-3  # of a parameter's own step, in every parameter: less ends the fit, too
-UNSEEN = 0.05  # noises, over all values together: a parameter whose own step changes less stays where it is
+UNSEEN = 5e-3  # noises, over all values together: a parameter whose own step changes less stays where it is
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,9 @@
 """What a model leaves unexplained: is it noise, lay-up scatter, or structure that needs a cause?
 
-Scatter is smooth over some cells and goes nowhere in particular. Structure shows in three ways that scatter cannot:
-it spans the part, so that low polynomials of the fabric coordinates catch it; it lifts the ply off the tool; or it
-shears the ply without moving it.
+Scatter is smooth over some cells and goes nowhere in particular. Structure shows in four ways that scatter cannot:
+it spans the part, so that low polynomials of the fabric coordinates catch it; it moves yarns as wholes, as a bend or
+a kink of a generator moves every yarn that crosses it; it lifts the ply off the tool; or it shears the ply without
+moving it.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from geomdrap.criticism.likelihood import Judge, Residuals, Scatter, spanned, sq
 from geomdrap.criticism.scatter import DEG
 
 DEGREE = 3  # of the polynomials
+KNOTS = 8  # of what moves yarns as wholes, over the patch
 LEAST = 1e-4  # chance of so much structure where there is only noise and scatter
 NOISE = 0.5  # of the noise: a leftover smaller than this is no matter
 
@@ -42,7 +44,7 @@ def leftover(experiment: Experiment, rows: np.ndarray, judge: Judge, model: Resi
     """Judge the residuals of a fitted model, on the values ``rows`` (m,) bool."""
     at = experiment.at[experiment.point_of()[rows]]
     channel = np.array(experiment.channels)[experiment.channel_of()[rows]]
-    fields = smooth_fields(at, channel)
+    fields = np.hstack([smooth_fields(at, channel), yarn_fields(at, channel)])
     whiten = judge.whiten(scatter)
     residual, slopes, smooth = whiten(model.residual), whiten(model.slopes), whiten(fields)
     before = square_beside(residual, slopes)
@@ -82,4 +84,25 @@ def smooth_fields(at: np.ndarray, channel: np.ndarray) -> np.ndarray:
             column = sum((np.where(channel == c, v, 0.0) for c, v in seen.items()), np.zeros(len(at)))
             if np.abs(column).max() > 0.0:
                 columns.append(column)
+    return np.column_stack(columns)
+
+
+def yarn_fields(at: np.ndarray, channel: np.ndarray) -> np.ndarray:
+    """Shifts of whole yarns along themselves, piecewise linear: of weft yarns by their u, of warp yarns by their v.
+
+    Arguments as in ``smooth_fields``. Gives fields (m, k).
+    """
+    columns = []
+    seen = (("across", {"shear": 1.0, "warp": 1.0}), ("along", {"shear": 1.0, "weft": -1.0}))
+    for x, (shifted, turned) in zip(at.T, seen, strict=True):
+        knots = np.linspace(x.min(), x.max(), KNOTS)
+        wide = max(knots[1] - knots[0], 1e-12)
+        for knot in knots:
+            away = (x - knot) / wide
+            hat = np.maximum(1.0 - np.abs(away), 0.0)
+            slope = np.where(np.abs(away) < 1.0, -np.sign(away), 0.0) / wide * DEG
+            column = np.where(channel == shifted, hat, 0.0)
+            for name, sign in turned.items():
+                column = column + np.where(channel == name, sign * slope, 0.0)
+            columns.append(column)
     return np.column_stack(columns)

@@ -17,6 +17,7 @@ from geomdrap.criticism.scatter import DEG, Smoothness, radial, scatter_covarian
 RATIO = 1.4  # between neighbouring correlation lengths that are tried
 SIZES = (0.0, 0.3, 0.5, 0.8, 1.3, 2.0, 3.2, 5.0, 8.0, 13.0, 20.0)  # τ over the positions' noise
 TURNING = 2.5  # degrees: scatter of the yarns' directions and shear, which no good lay-up exceeds
+LARGEST = 1.0  # mm: yarns wander by some tenths of one; what lies further off was laid so, and has a cause
 COVARIANCES, FACTORS = 2, 32  # kept: some 10 MB each at 400 points
 WIDEST = 0.3  # of the measured patch's longer side: what varies more slowly is no scatter
 
@@ -178,7 +179,7 @@ class Judge:
 
 def largest_scatter(length: float) -> float:
     """Largest scatter, mm, with a correlation length; its shear has a standard deviation of √2·size/length."""
-    return float(np.radians(TURNING)) * length / float(np.sqrt(2.0))
+    return min(LARGEST, float(np.radians(TURNING)) * length / float(np.sqrt(2.0)))
 
 
 def square_beside(residual: np.ndarray, slopes: np.ndarray) -> float:

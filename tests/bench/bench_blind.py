@@ -42,7 +42,8 @@ def run_set(kind, seed, noise, points):
         path = make(seed, folder=folder, noise=noise, points=points, **options)
         made = time.process_time() - start
         seal = read_seal(path)
-        diagnosis = gd.diagnose(**_read(path)).as_dict()
+        solved = gd.diagnose(**_read(path))
+        diagnosis = solved.as_dict()
         truth = unseal(path)
     told = grade(truth["answer"], diagnosis["verdict"], diagnosis["candidates"])
     return {
@@ -58,6 +59,9 @@ def run_set(kind, seed, noise, points):
         "candidates": diagnosis["candidates"],
         "confidence": diagnosis["confidence"],
         "grade": told,
+        "error": round(solved.steps[-1].error, 3),
+        "noise_floor": diagnosis["noise_floor"],
+        "leftover": diagnosis["leftover"],
         "parameters": parameters(truth, diagnosis),
         "make_s": round(made, 2),
         "solve_s": round(time.process_time() - start - made, 2),
