@@ -42,6 +42,7 @@ TURNED = 0.4  # degrees: likewise
 CERTAIN = 3.0  # standard deviations of the placement
 ELSEWHERE = 1.5  # of the chi-square on the coarser net: a finer one that fits worse came to rest elsewhere
 WORTH = 0.03  # of the first misfit: what a further effect must explain
+UNEXPLAINED = 0.015  # of the first misfit: what the final model may leave where structure is in it
 
 
 def diagnose(
@@ -89,7 +90,7 @@ def search(experiment: Experiment, names: Sequence[str], progress: Progress) -> 
         if best is None or len(rounds) == MOST_EFFECTS or locks(experiment, rounds[0]):
             return rounds
         base, scatter = rounds[-1].trial(best)
-        if not (worth_more(rounds[0], base) and left_over(experiment, base, scatter).structured):
+        if not (leaves(rounds[0], base, WORTH) and left_over(experiment, base, scatter).structured):
             return rounds
 
 
@@ -117,14 +118,14 @@ def chosen(rounds: Sequence[Round]) -> str | None:
     return found[0]
 
 
-def worth_more(first: Round, model: Fitted) -> bool:
-    """Whether a model leaves as much of the first misfit as a further effect would have to explain.
+def leaves(first: Round, model: Fitted, share: float) -> bool:
+    """Whether a model leaves that share of the first misfit.
 
-    Less is what facets, the pitch and other definitions of the same effect make.
+    A little is what facets, the pitch and other definitions of the same effect make.
     """
     noise = first.judge.noise
     before, after = (float(np.sum((m.fit.residual[first.rows] / noise) ** 2 - 1.0)) for m in (first.base, model))
-    return not model.model.effects or not after < WORTH * before
+    return not model.model.effects or not after < share * before
 
 
 def left_over(experiment: Experiment, model: Fitted, scatter: Scatter) -> Leftover:
@@ -153,7 +154,7 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         left = left_over(experiment, model, scatter)
     if LOCKING in names:
         model = doubted(experiment, rounds[0], model)
-    unexplained = left.structured and worth_more(rounds[0], model) and names != [LOCKING]
+    unexplained = left.structured and leaves(rounds[0], model, UNEXPLAINED) and names != [LOCKING]
     if unexplained and len(alike) == 1:
         near = alike_in_what_they_leave(rounds[len(names) - 1].evidence)
         alike = near if names[-1] in near else alike

@@ -18,7 +18,7 @@ from geomdrap.criticism.likelihood import Judge, Residuals, Scatter, spanned, sq
 from geomdrap.criticism.scatter import DEG
 
 DEGREE = 3  # of the polynomials
-KNOTS = 8  # of what moves yarns as wholes, over the patch
+MOST_KNOTS = 16  # of what moves yarns as wholes, over the patch
 LEAST = 1e-4  # chance of so much structure where there is only noise and scatter
 NOISE = 0.5  # of the noise: a leftover smaller than this is no matter
 
@@ -44,15 +44,19 @@ def leftover(experiment: Experiment, rows: np.ndarray, judge: Judge, model: Resi
     """Judge the residuals of a fitted model, on the values ``rows`` (m,) bool."""
     at = experiment.at[experiment.point_of()[rows]]
     channel = np.array(experiment.channels)[experiment.channel_of()[rows]]
-    fields = np.hstack([smooth_fields(at, channel), yarn_fields(at, channel)])
     whiten = judge.whiten(scatter)
-    residual, slopes, smooth = whiten(model.residual), whiten(model.slopes), whiten(fields)
+    residual, slopes = whiten(model.residual), whiten(model.slopes)
     before = square_beside(residual, slopes)
-    after = square_beside(residual, np.hstack([slopes, smooth]))
-    more = spanned(np.hstack([slopes, smooth])).shape[1] - spanned(slopes).shape[1]
-    p_value = chance(before - after, more)
+    sought = [smooth_fields(at, channel), yarn_fields(at, channel)]
+    chances = []
+    for fields in sought:
+        both = np.hstack([slopes, whiten(fields)])
+        more = spanned(both).shape[1] - spanned(slopes).shape[1]
+        chances.append(chance(before - square_beside(residual, both), more))
+    p_value = min(len(sought) * min(chances), 1.0)
     # its size where it was measured, channel by channel
-    both = np.hstack([slopes, smooth])
+    fields = np.hstack(sought)
+    both = np.hstack([slopes, whiten(fields)])
     norm = np.linalg.norm(both, axis=0) + 1e-300
     step = np.linalg.lstsq(both / norm, residual, rcond=1e-8)[0] / norm
     caught = np.abs(np.hstack([model.slopes, fields]) @ step) / judge.noise
@@ -92,10 +96,12 @@ def yarn_fields(at: np.ndarray, channel: np.ndarray) -> np.ndarray:
 
     Arguments as in ``smooth_fields``. Gives fields (m, k).
     """
+    places = len(np.unique(np.round(at, 6), axis=0))
+    count = min(max(int(np.sqrt(places)), 3), MOST_KNOTS)
     columns = []
     seen = (("across", {"shear": 1.0, "warp": 1.0}), ("along", {"shear": 1.0, "weft": -1.0}))
     for x, (shifted, turned) in zip(at.T, seen, strict=True):
-        knots = np.linspace(x.min(), x.max(), KNOTS)
+        knots = np.linspace(x.min(), x.max(), count)
         wide = max(knots[1] - knots[0], 1e-12)
         for knot in knots:
             away = (x - knot) / wide
