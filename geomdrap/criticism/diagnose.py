@@ -189,7 +189,7 @@ def _final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Exp
     if any(make(name).costly for name in model.model.effects):
         finer = experiment.finer()
         better = refined(finer, whiten, model, experiment.pitches[1] / finer.pitches[1])
-        return (finer, better) if better.fit.chi2 < ELSEWHERE * model.fit.chi2 else (experiment, model)
+        return (finer, better) if better.fit.chi2 <= ELSEWHERE * model.fit.chi2 else (experiment, model)
     if scatter.size > 0.0 and whole:
         model = refit(experiment, whiten, model)
     return experiment, with_fresh_slopes(experiment, model)

@@ -71,3 +71,16 @@ def test_slopes_lean_away_from_a_bound():
     got = take_slopes(curve, at, curve(at), STEPS, np.zeros(2), np.array([1.0, 1.0]))
     t = np.linspace(0.0, 2.0, 40)
     np.testing.assert_allclose(got, np.column_stack([np.exp(-t), -t * np.exp(-t)]), atol=0.02)
+
+
+def test_a_parameter_that_only_rounding_shows_stays_where_it_is():
+    rng = np.random.default_rng(2)
+
+    def predict(p):
+        return curve(p[:2]) + 1e-7 * np.sin(1e6 * p[2] + np.arange(40))
+
+    y = curve(np.array([3.0, 1.5])) + 0.02 * rng.normal(size=40)
+    bounds = np.array([-100.0, -100.0, 1.0]), np.array([100.0, 100.0, 90.0])
+    got = fit(predict, y, lambda a: a / 0.02, np.array([1.0, 0.5, 40.0]), np.array([0.01, 0.01, 5.0]), *bounds)
+    assert got.values[2] == 40.0
+    assert got.values[:2] == pytest.approx([3.0, 1.5], abs=0.1)

@@ -1,0 +1,59 @@
+"""Structure against scatter: what moves whole yarns is found, scatter as lay-ups have it is not."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from geomdrap.criticism.leftover import leftover
+from geomdrap.criticism.likelihood import Judge, Residuals, Scatter
+from geomdrap.criticism.scatter import DEG, scatter_covariance
+
+CHANNELS = ("along", "across", "shear")
+SCATTER = Scatter(0.5, 38.0)
+AT = np.stack(np.meshgrid(*2 * [16.0 * np.arange(-7, 8)], indexing="ij"), axis=-1).reshape(-1, 2)
+N = len(AT)
+MASK = np.ones((N, 3), bool)
+NOISE = np.repeat([0.2, 0.2, 0.6], N)
+EXPERIMENT = SimpleNamespace(
+    at=AT,
+    channels=CHANNELS,
+    point_of=lambda: np.tile(np.arange(N), 3),
+    channel_of=lambda: np.repeat(np.arange(3), N),
+)
+JUDGE = Judge(AT, CHANNELS, MASK, NOISE, 0.2)
+PLACEMENT = np.column_stack(
+    [np.repeat([1.0, 0.0, 0.0], N), np.repeat([0.0, 1.0, 0.0], N), np.concatenate([-AT[:, 1], AT[:, 0], np.zeros(N)])]
+)
+
+
+def judged(values):
+    return leftover(EXPERIMENT, np.ones(3 * N, bool), JUDGE, Residuals(values, PLACEMENT), SCATTER)
+
+
+def scattered(seed):
+    rng = np.random.default_rng(seed)
+    covariance = SCATTER.size**2 * scatter_covariance(AT, CHANNELS, MASK, SCATTER.length, SCATTER.kind)
+    root = np.linalg.cholesky(covariance + 1e-9 * np.eye(3 * N))
+    return root @ rng.normal(size=3 * N) + NOISE * rng.normal(size=3 * N)
+
+
+def moved(shift, slope):
+    """What weft yarns shifted along themselves by ``shift`` mm, ``slope`` mm per mm of u, change."""
+    return np.concatenate([np.zeros(N), shift, DEG * slope])
+
+
+def test_scatter_is_no_structure():
+    p = np.array([judged(scattered(seed)).p_value for seed in range(30)])
+    assert p.min() > 1e-4
+    assert np.mean(p < 0.1) < 0.3
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_kink_of_the_warp_generator_is_structure_where_its_bend_and_turn_are_taken_out(seed):
+    u = AT[:, 0]
+    kink, step = 0.08 * np.maximum(u - 30.0, 0.0), 0.08 * (u > 30.0)
+    bend = np.polyfit(u, kink, 2)
+    found = judged(scattered(seed) + moved(kink - np.polyval(bend, u), step - np.polyval(np.polyder(bend), u)))
+    assert found.structured
+    assert found.channels
