@@ -17,6 +17,7 @@ semi-infinite programming, R. Hettich and K. Kortanek, SIAM Review 35 (1993).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,6 +33,8 @@ TOUCH = 1e-6  # of the radius: a ball that comes this close touches
 SETTLED = 1e-4  # of the radius: how closely the best centre is found
 ROUNDS = 30
 SKIRT = 2.0  # radii: the part goes on straight beyond its rim by as much, so that no ball comes round it
+LOOKS = (16, 64)  # centres asked about for each point, before all that are left
+UNKNOWN = -1
 KEPT = 5  # tool points that a centre is kept away from; further ones replace the one that binds least
 SMOOTH_COSINE = math.cos(math.radians(12.0))  # facets that differ less from the vertex normal stand for a curve
 
@@ -93,20 +96,57 @@ def _with_skirt(surface: Surface, width: float) -> Tool:
 def _allowed_centres(
     surface: Surface, tool: Tool, radius: float, over_vertices: np.ndarray, lifted: np.ndarray
 ) -> np.ndarray:
-    """For each lifted vertex the nearest centre at which a ball rests on the part without cutting it (k, 3)."""
-    from scipy.spatial import cKDTree
+    """For each lifted vertex the nearest centre at which a ball rests on the part without cutting it (k, 3).
 
+    Raises EffectError where there is none on the whole part.
+    """
     over_facets = surface.points[surface.triangles].mean(axis=1) + radius * surface.normals
     resting = np.ones(len(over_vertices), bool)
     resting[lifted] = False
     centres = np.vstack([over_facets, over_vertices[resting]])
-    centres = centres[tool.clearance(centres)[1] >= radius * (1.0 - TOUCH)]
-    if len(centres) == 0:
+    nearest = _nearest_allowed(
+        centres, surface.points[lifted], lambda c: tool.clearance(c)[1] >= radius * (1.0 - TOUCH)
+    )
+    if nearest is None:
         raise EffectError(
             f"effect bridging: a ball of radius {radius:g} mm touches {surface.source} nowhere without cutting it; "
             "use a smaller radius, or turn the part's normal (--flip) if the ply lies on its other side"
         )
-    found: np.ndarray = centres[cKDTree(centres).query(surface.points[lifted])[1]]
+    return centres[nearest]
+
+
+def _nearest_allowed(
+    centres: np.ndarray, points: np.ndarray, allowed: Callable[[np.ndarray], np.ndarray]
+) -> np.ndarray | None:
+    """Numbers (k,) of the allowed centres nearest to points (k, 3); None if none is allowed.
+
+    Those nearest to the points are asked about first: mostly that is few of all.
+    """
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(centres)
+    verdict = np.full(len(centres), UNKNOWN)
+    found = np.full(len(points), -1)
+    todo, seen = np.arange(len(points)), 0
+    for many in LOOKS:
+        look = min(many, len(centres))
+        near = np.asarray(tree.query(points[todo], k=range(seen + 1, look + 1))[1])
+        asked = np.unique(near[verdict[near] == UNKNOWN])
+        verdict[asked] = allowed(centres[asked])
+        good = verdict[near] == 1
+        has = good.any(axis=1)
+        found[todo[has]] = near[has, good[has].argmax(axis=1)]
+        todo, seen = todo[~has], look
+        if len(todo) == 0:
+            return found
+        if seen == len(centres):
+            return None
+    asked = np.flatnonzero(verdict == UNKNOWN)
+    verdict[asked] = allowed(centres[asked])
+    good = np.flatnonzero(verdict == 1)
+    if len(good) == 0:
+        return None
+    found[todo] = good[cKDTree(centres[good]).query(points[todo])[1]]
     return found
 
 
