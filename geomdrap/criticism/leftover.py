@@ -19,6 +19,7 @@ from geomdrap.criticism.scatter import DEG
 
 DEGREE = 3  # of the polynomials
 MOST_KNOTS = 16  # of what moves yarns as wholes, over the patch
+ROUGHLY = 50.0  # times less a chance must be there: how scatter adds up over whole yarns is known only roughly
 LEAST = 1e-4  # chance of so much structure where there is only noise and scatter
 NOISE = 0.5  # of the noise: a leftover smaller than this is no matter
 
@@ -47,15 +48,15 @@ def leftover(experiment: Experiment, rows: np.ndarray, judge: Judge, model: Resi
     whiten = judge.whiten(scatter)
     residual, slopes = whiten(model.residual), whiten(model.slopes)
     before = square_beside(residual, slopes)
-    sought = [smooth_fields(at, channel), yarn_fields(at, channel)]
+    sought = [(smooth_fields(at, channel), 1.0), (yarn_fields(at, channel), ROUGHLY)]
     chances = []
-    for fields in sought:
+    for fields, rough in sought:
         both = np.hstack([slopes, whiten(fields)])
         more = spanned(both).shape[1] - spanned(slopes).shape[1]
-        chances.append(chance(before - square_beside(residual, both), more))
+        chances.append(rough * chance(before - square_beside(residual, both), more))
     p_value = min(len(sought) * min(chances), 1.0)
     # its size where it was measured, channel by channel
-    fields = np.hstack(sought)
+    fields = np.hstack([fields for fields, _ in sought])
     both = np.hstack([slopes, whiten(fields)])
     norm = np.linalg.norm(both, axis=0) + 1e-300
     step = np.linalg.lstsq(both / norm, residual, rcond=1e-8)[0] / norm
