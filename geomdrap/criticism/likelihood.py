@@ -15,7 +15,9 @@ from geomdrap.criticism.kept import kept
 from geomdrap.criticism.scatter import DEG, Smoothness, radial, scatter_covariance, shifts
 
 RATIO = 1.4  # between neighbouring correlation lengths that are tried
-SIZES = (0.0, 0.3, 0.5, 0.8, 1.3, 2.0, 3.2, 5.0, 8.0, 13.0, 20.0)  # τ over the positions' noise
+SIZES = (0.0, 0.3, 0.4, 0.5, 0.65, 0.8, 1.0, 1.3, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.5, 8.0, 10.0, 13.0, 16.0, 20.0)
+"""Scatter over the positions' noise: in small steps, since intervals and tests are as good as its size is."""
+START = 5  # of them: where the search begins
 TURNING = 2.5  # degrees: scatter of the yarns' directions and shear, which no good lay-up exceeds
 LARGEST = 1.0  # mm: yarns wander by some tenths of one; what lies further off was laid so, and has a cause
 COVARIANCES, FACTORS = 2, 32  # kept: some 10 MB each at 400 points
@@ -145,7 +147,7 @@ class Judge:
     def _climb(self, value: Callable[[Scatter], float]) -> None:
         """Coordinate search over length, size and smoothness for the greatest value."""
         length = len(self.lengths) // 2
-        size = max(n for n in range(4) if n == 0 or SIZES[n] * self.unit <= largest_scatter(self.lengths[length]))
+        size = max(n for n in range(START + 1) if n == 0 or SIZES[n] * self.unit <= largest_scatter(self.lengths[length]))
         kind = Smoothness.SMOOTH
 
         def here(length: int, size: int, kind: Smoothness) -> float:

@@ -52,7 +52,7 @@ def test_scatter_is_no_structure():
 @pytest.mark.parametrize("seed", range(3))
 def test_a_kink_of_the_warp_generator_is_structure_where_its_bend_and_turn_are_taken_out(seed):
     u = AT[:, 0]
-    kink, step = 0.08 * np.maximum(u - 30.0, 0.0), 0.08 * (u > 30.0)
+    kink, step = 0.1 * np.maximum(u - 30.0, 0.0), 0.1 * (u > 30.0)
     bend = np.polyfit(u, kink, 2)
     found = judged(scattered(seed) + moved(kink - np.polyval(bend, u), step - np.polyval(np.polyder(bend), u)))
     assert found.structured
