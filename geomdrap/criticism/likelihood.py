@@ -147,7 +147,8 @@ class Judge:
     def _climb(self, value: Callable[[Scatter], float]) -> None:
         """Coordinate search over length, size and smoothness for the greatest value."""
         length = len(self.lengths) // 2
-        size = max(n for n in range(START + 1) if n == 0 or SIZES[n] * self.unit <= largest_scatter(self.lengths[length]))
+        most = largest_scatter(self.lengths[length])
+        size = max(n for n in range(START + 1) if n == 0 or SIZES[n] * self.unit <= most)
         kind = Smoothness.SMOOTH
 
         def here(length: int, size: int, kind: Smoothness) -> float:
