@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from geomdrap.fishnet import Effect, Net, Parameter
-from geomdrap.fishnet.relax import pose, relax
+from geomdrap.fishnet.relax import relax
 from geomdrap.fishnet.relax_energy import Law
 from geomdrap.fishnet.relax_net import as_net, chord_sines
+from geomdrap.fishnet.relax_problem import pose
 
 SLIDING = 0.02  # what a piece resists changing its length by sliding, as a share of shear
 WHOLE_YARN = (1.0, 1e2, 1e4)  # what a whole yarn resists, raised step by step until it keeps its length

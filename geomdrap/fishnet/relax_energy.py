@@ -2,7 +2,7 @@
 
 E = piece·Σ e² over yarn pieces + yarn·Σ (Σ e)² over whole yarns + Σ W(s) over corners of cells, with the strain
 e = l/c − 1 of a piece, s = sin γ at a corner less a target, and W = ratio/4·(1 ± alpha)·s² + lock/4·(|s| − s_lock)²₊.
-What is held where it was laid costs friction·Σ |x − x0|²/A besides, A the area of the net (see ``relax``).
+What is held where it was laid costs friction·Σ |x − x0|²/A besides, A the area of the net (see ``relax_problem``).
 Usually piece = 1, and yarn and targets are 0; the other way round yarns slide at their crossings. Lengths and angles
 are those of the straight lines between nodes; c is the length of that line in the geometric net, so that what a chord
 cuts short of a curved yarn counts nowhere.

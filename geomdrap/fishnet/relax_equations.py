@@ -19,7 +19,7 @@ from geomdrap.geodesic.compiled import kernel
 
 if TYPE_CHECKING:
     from geomdrap.fishnet.dissection import Fronts
-    from geomdrap.fishnet.relax import Problem
+    from geomdrap.fishnet.relax_problem import Problem
     from geomdrap.fishnet.relax_surface import Footing
 
 ROUNDED_OFF = 1e-13  # of the largest stiffness

@@ -9,13 +9,15 @@ import numpy as np
 
 from geomdrap.fishnet.grid import Status
 from geomdrap.fishnet.net import cells_of
-from geomdrap.fishnet.relax import GOOD_ENOUGH, law_of, pose, relax
+from geomdrap.fishnet.relax import GOOD_ENOUGH, relax
+from geomdrap.fishnet.relax_problem import law_of, pose
 
 ON_RIM = 1e-6  # of the pitch: a node no further beyond the rim is on it
 
 if TYPE_CHECKING:
     from geomdrap.fishnet.net import Net
-    from geomdrap.fishnet.relax import Problem, Relaxed
+    from geomdrap.fishnet.relax import Relaxed
+    from geomdrap.fishnet.relax_problem import Problem
 
 
 def relaxed(net: Net, start: np.ndarray | None = None) -> Net:

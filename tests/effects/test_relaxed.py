@@ -10,8 +10,9 @@ from shared import drape
 
 import geomdrap as gd
 from geomdrap.fishnet.dissection import AFTER
-from geomdrap.fishnet.relax import law_of, pose, relax
+from geomdrap.fishnet.relax import relax
 from geomdrap.fishnet.relax_energy import Law, derivatives, energy
+from geomdrap.fishnet.relax_problem import law_of, pose
 from geomdrap.surface import shapes
 
 RADIUS = 80.0
