@@ -10,6 +10,8 @@ if TYPE_CHECKING:
     from geomdrap.forming.fit_coupon import CouponFit, FittedCurve
     from geomdrap.forming.further import Advice
 
+UNLIKE = 0.3
+"""Share of the readings' size that a fit may leave before it is no description of the test."""
 HELPS = 0.8
 """Share of a sigma below which a further test has to bring it to be worth a word."""
 
@@ -18,6 +20,12 @@ def warnings_of(name: str, found: CouponFit) -> list[str]:
     """What the user should look at."""
     known = found.identified
     said = [] if known.converged else [f"{name}: the fit did not come to an end; what it had is kept"]
+    said += [
+        f"{name}: the fit leaves {100.0 * share:.0f} % of the {column}: this is not the test that was measured; "
+        "check its settings (angle, length, width, speed) and the units of the table"
+        for column, share in known.scatter.items()
+        if share > UNLIKE
+    ]
     if known.resized:
         again = "with masses and steps for a cloth stiffer than it began with"
         said.append(f"{name}: the fit started over {_times(known.resized)}, {again}")

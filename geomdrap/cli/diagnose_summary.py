@@ -28,7 +28,7 @@ def improvement_summary(improvement: Improvement, files: Mapping[str, Path]) -> 
         position = "-" if step.rms_position is None else f"{step.rms_position:.3g} mm"
         shear = "-" if step.rms_shear is None else f"{step.rms_shear:.3g}°"
         rows.append((name, f"{step.error:.2f}", f"{step.cv_error:.2f}", position, shear))
-    rows.append(("a perfect model", f"{d.noise_floor:.2f}", "", "", ""))
+    rows.append(("noise and scatter", f"{d.noise_floor:.2f}", "", "", ""))
     return "\n".join([*_words(d, improvement.notes), "", *_table(rows), *_files(files)])
 
 

@@ -42,6 +42,8 @@ def effects(name: str | None, plugins: tuple[Path, ...], folder: Path | None, as
     if name is None and folder is not None:
         raise click.UsageError("-o draws one effect; give its NAME as well", click.get_current_context())
     chosen = list(library.available().values()) if name is None else [library.find(name.partition(":")[0])]
+    if name is not None and name.partition(":")[2].strip():
+        library.parse(name)  # values that cannot be are refused, whether they are drawn or not
     files = {} if name is None or folder is None else _draw(name, folder)
     if as_json:
         rows = [_as_dict(effect) for effect in chosen]
@@ -60,6 +62,8 @@ def _draw(text: str, folder: Path) -> dict[str, Path]:
 
     name, _, values = text.partition(":")
     effect = library.parse(text) if values.strip() else library.make(name.strip())
+    if effect.is_neutral and values.strip():
+        raise click.UsageError(f"{text} does nothing, so nothing can be drawn; leave out the values, or take others")
     if effect.is_neutral:
         effect = type(effect)(**shown_values(effect))
     check_writable(folder)

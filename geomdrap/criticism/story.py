@@ -38,10 +38,11 @@ def verdict_sentence(d: Diagnosis) -> str:
 def error_sentence(d: Diagnosis) -> str:
     """How the error falls."""
     first, last = d.steps[0], d.steps[-1]
+    scatter = f" and lay-up scatter of {d.scatter.size:.2g} mm" if d.scatter.size > 0.0 else ""
     return (
         f"Error over the noise: {first.error:.2f} as meant, {d.steps[1].error:.2f} with the placement fitted"
         + (f", {last.error:.2f} with all effects" if len(d.steps) > 2 else "")
-        + f" (held out {last.cv_error:.2f}); a perfect model would have {d.noise_floor:.2f}."
+        + f" (held out {last.cv_error:.2f}); noise{scatter} alone would leave {d.noise_floor:.2f}."
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from geomdrap.criticism.diagnosis import AMBIGUOUS, UNKNOWN
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.leftover import Leftover
+from geomdrap.criticism.locked import LOCKING
 from geomdrap.criticism.model import Fitted
 
 if TYPE_CHECKING:
@@ -42,6 +43,11 @@ def hints_for(
     places = ", ".join(SEEN[c] for c in left.channels) or "everywhere a little"
     if verdict == AMBIGUOUS and left.structured:
         hints.append(f"none of the candidates explains all of it: {left.size:.1f} times the noise is left, {places}")
+    if LOCKING in candidates and verdict not in (AMBIGUOUS, UNKNOWN) and left.structured:
+        hints.append(
+            f"{left.size:.1f} times the noise is left, {places}: a locked ply rests in one of many states of like "
+            "energy, and no model foretells which"
+        )
     if verdict == UNKNOWN:
         hints.append(
             f"something is left that no effect of the library explains, {left.size:.1f} times the noise, {places}"

@@ -61,7 +61,7 @@ def _waterfall(figure: Any, improvement: Improvement) -> None:
         axes.bar(k + 0.19, step.cv_error, 0.36, color=palette.BARE_STRIPE, label="held out" if k == 0 else None)
         axes.text(k + 0.19, step.cv_error, f"{step.cv_error:.2f}", ha="center", va="bottom", fontsize=8.5)
         axes.text(k - 0.19, step.error, f"{step.error:.2f}", ha="center", va="bottom", fontsize=8.5)
-    axes.axhline(floor, color=palette.LIMIT_LINE, lw=1.4, label=f"a perfect model: {floor:.2f}")
+    axes.axhline(floor, color=palette.LIMIT_LINE, lw=1.4, label=f"noise and scatter alone: {floor:.2f}")
     axes.set_xticks(range(len(steps)), names, fontsize=9.5, color=palette.INK)
     axes.set_ylabel("error over the noise", fontsize=9, color=palette.INK)
     axes.tick_params(labelsize=8.5, colors=palette.INK, length=3)

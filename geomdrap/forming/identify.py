@@ -35,7 +35,7 @@ ENOUGH = 1e-4
 """A fit ends where a step would lower its cost by less than this share: with 50 readings below a tenth of sigma."""
 MOST_RUNS = 40
 """Simulations per parameter, those for slopes among them, after which a fit gives up, and says so."""
-CONFOUNDED = 0.95
+CONFOUNDED = 0.9
 """Correlation from which two parameters are not told apart, if one of them is not known well by itself."""
 KNOWN = 0.05
 """Relative standard deviation up to which a parameter is known, whatever it is correlated with."""

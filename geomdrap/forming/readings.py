@@ -18,8 +18,8 @@ def read_test(path: str | Path) -> dict[str, dict[str, Array]]:
     """Read a CSV table with the column ``displacement`` (mm) and any of ``COLUMNS`` (N, deg): columns by series.
 
     An optional column ``series`` names who or what read the row; without it the series is called ``test``. Empty
-    cells are not read (NaN); lines with # are notes; other columns are left alone. FormingError names the file and
-    what is wrong.
+    cells are not read (NaN); lines with # are notes; other columns are left alone, but a column ``case`` must hold
+    one case. FormingError names the file and what is wrong.
     """
     header, rows = _cells(path)
     if "displacement" not in header or not set(COLUMNS) & set(header):
@@ -29,14 +29,22 @@ def read_test(path: str | Path) -> dict[str, dict[str, Array]]:
         )
     wanted = [name for name in ("displacement", *COLUMNS) if name in header]
     table: dict[str, list[list[float]]] = {}
+    cases: list[str] = []
     for number, row in rows:
         if len(row) != len(header):
             raise FormingError(
                 f"{path}, line {number}, has {len(row)} cells under {len(header)} headings; correct it"
             )
         cells = dict(zip(header, row, strict=True))
+        if "case" in cells and cells["case"] not in cases:
+            cases.append(cells["case"])
         series = cells.get("series", "test") or "test"
         table.setdefault(series, []).append([_number(path, number, name, cells[name]) for name in wanted])
+    if len(cases) > 1:
+        raise FormingError(
+            f"{path} holds {len(cases)} cases ({', '.join(cases)}), and a file is one test: keep the rows of one, "
+            "and give the others as files of their own (--also)"
+        )
     found = {}
     for series, lines in table.items():
         values = np.array(lines)

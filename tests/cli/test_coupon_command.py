@@ -210,6 +210,27 @@ def test_a_split_of_no_use_is_refused(error_of: Callable[..., str], tmp_path: Pa
     )
 
 
+@pytest.mark.usefixtures("no_fit")
+def test_a_table_of_several_cases_is_not_taken_for_one_test(error_of: Callable[..., str], tmp_path: Path) -> None:
+    rows = "".join(f"{c},{d},{d}\n" for c in ("0 deg", "45 deg") for d in (1, 2))
+    (tmp_path / "t.csv").write_text("case,displacement,force\n" + rows)
+    said = error_of("coupon", "fit", "uniaxial", "t.csv")
+    assert "holds 2 cases (0 deg, 45 deg), and a file is one test: keep the rows of one" in said
+
+
+def test_a_fit_that_describes_nothing_is_warned_of() -> None:
+    from types import SimpleNamespace
+
+    from geomdrap.cli.coupon_fit_summary import warnings_of
+
+    known = SimpleNamespace(
+        converged=True, resized=0, confounded=[], loose=[], scatter={"force": 0.99, "shear": 0.01}
+    )
+    said = warnings_of("test", SimpleNamespace(identified=known, rivals=(), advice=()))
+    assert len(said) == 1
+    assert "leaves 99 % of the force" in said[0]
+
+
 @pytest.mark.usefixtures("one_start")
 @pytest.mark.parametrize(
     ("rows", "said"),

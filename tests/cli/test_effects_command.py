@@ -62,6 +62,10 @@ def test_a_picture_of_the_signature_is_written(tmp_path):
         (["effects", "slide"], "there is no effect 'slide'; the effects are"),
         (["effects", "-o", "x"], "give its NAME"),
         (["effects", "--plugin", "missing.py"], "missing.py: there is no such file"),
+        (["effects", "locking:angle=abc"], "is not PARAMETER=NUMBER"),
+        (["effects", "locking:angle=-5"], "-5"),
+        (["effects", "locking:foo=3"], "foo"),
+        (["effects", "locking:angle=90", "-o", "x"], "does nothing, so nothing can be drawn"),
     ],
 )
 def test_what_cannot_be_done_is_said_in_one_line(arguments, words):
