@@ -113,6 +113,6 @@ def _maps(figure: Any, both: Sequence[Any], coupon: Coupon, label: str) -> None:
         axes.autoscale_view()
         axes.set_aspect("equal")
         axes.set_axis_off()
-        at = ", ".join(w for w in (f"{coupon.result.displacement[-1]:.3g} mm", label) if w)
-        axes.set_title(f"tension, {name}\nat {at} [N/mm]", fontsize=9, color=palette.INK)
+        words = (f"tension, {name} [N/mm]", f"at {coupon.result.displacement[-1]:.3g} mm", label)
+        axes.set_title("\n".join(line for line in words if line), fontsize=9, color=palette.INK)
         figure.colorbar(lines, ax=axes, orientation="horizontal", shrink=0.85, pad=0.02).ax.tick_params(labelsize=8)
