@@ -66,24 +66,19 @@ def cosine(a: np.ndarray, i: int, j: int, b: np.ndarray, k: int, m: int) -> floa
 
 
 @kernel
-def strain_sums(
-    warp: np.ndarray, weft: np.ndarray, rest_u: np.ndarray, rest_v: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, float]:
-    """Sum of the strains of the pieces of each warp yarn (nv,) and each weft yarn (nu,), and of all their squares."""
-    along_u, along_v, squares = np.zeros(rest_u.shape[1]), np.zeros(rest_v.shape[0]), 0.0
-    for i in range(rest_u.shape[0]):
-        for j in range(rest_u.shape[1]):
-            if rest_u[i, j] > 0.0:
-                strain = warp[i, j, 3] / rest_u[i, j] - 1.0
-                along_u[j] += strain
+def strain_sums(line: np.ndarray, rest: np.ndarray, axis: int) -> tuple[np.ndarray, float]:
+    """Sum of the strains of the pieces of each yarn along ``axis`` (0 warp, 1 weft), and of all their squares.
+
+    ``line`` (..., 4) are their `chords`.
+    """
+    along, squares = np.zeros(rest.shape[1 - axis]), 0.0
+    for i in range(rest.shape[0]):
+        for j in range(rest.shape[1]):
+            if rest[i, j] > 0.0:
+                strain = line[i, j, 3] / rest[i, j] - 1.0
+                along[j if axis == 0 else i] += strain
                 squares += strain * strain
-    for i in range(rest_v.shape[0]):
-        for j in range(rest_v.shape[1]):
-            if rest_v[i, j] > 0.0:
-                strain = weft[i, j, 3] / rest_v[i, j] - 1.0
-                along_v[i] += strain
-                squares += strain * strain
-    return along_u, along_v, squares
+    return along, squares
 
 
 @kernel
@@ -96,8 +91,9 @@ def energy(
     ``rest_u`` (nu - 1, nv), ``rest_v`` (nu, nv - 1): lengths c of the pieces, mm, 0 where there is none.
     """
     warp, weft = chords(x, rest_u, 1, 0), chords(x, rest_v, 0, 1)
-    along_u, along_v, squares = strain_sums(warp, weft, rest_u, rest_v)
-    total = law.piece * squares + law.yarn * ((along_u**2).sum() + (along_v**2).sum())
+    along_u, squares_u = strain_sums(warp, rest_u, 0)
+    along_v, squares_v = strain_sums(weft, rest_v, 1)
+    total = law.piece * (squares_u + squares_v) + law.yarn * ((along_u**2).sum() + (along_v**2).sum())
     for i in range(valid.shape[0]):
         for j in range(valid.shape[1]):
             if valid[i, j]:
@@ -284,7 +280,7 @@ def derivatives(
     nu, nv = x.shape[0], x.shape[1]
     g, h, size = np.zeros((nu, nv, 3)), np.zeros((nu, nv, 5, 2, 2)), np.zeros((nu, nv))
     warp, weft = chords(x, rest_u, 1, 0), chords(x, rest_v, 0, 1)
-    along_u, along_v, _ = strain_sums(warp, weft, rest_u, rest_v)
+    along_u, along_v = strain_sums(warp, rest_u, 0)[0], strain_sums(weft, rest_v, 1)[0]
     pull_u, pull_v = 2.0 * law.yarn * along_u, 2.0 * law.yarn * along_v
     for i in range(nu):
         for j in range(nv):
