@@ -50,15 +50,15 @@ class Problem:
 
 def law_of(fabric: Fabric) -> Law:
     """The energy of a fabric; where only a locking angle is given, nothing but friction resists below it."""
-    ratio, angle = fabric.shear_stiffness, fabric.locking_angle
-    if ratio is None and fabric.shear_asymmetry:
-        ratio = DEFAULT_RATIO
+    angle = fabric.locking_angle
+    default = DEFAULT_RATIO if fabric.shear_asymmetry else 0.0
+    ratio = fabric.shear_stiffness or default
     return Law(
-        ratio=ratio or 0.0,
+        ratio=ratio,
         alpha=fabric.shear_asymmetry or 0.0,
         lock=0.0 if angle is None else LOCK_STIFFNESS,
         lock_sine=1.0 if angle is None else math.sin(math.radians(angle)),
-        friction=FRICTION if ratio is None else 0.0,
+        friction=0.0 if ratio else FRICTION,
     )
 
 

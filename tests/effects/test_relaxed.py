@@ -203,6 +203,13 @@ def test_shear_stops_near_the_locking_angle_at_the_cost_of_yarn_length():
     assert np.nanmax(abs(locked.sides[0] / 8.0 - 1.0)) > 5e-3
 
 
+def test_friction_takes_the_place_of_a_stiffness_that_is_nothing():
+    assert law_of(gd.Fabric(locking_angle=30.0)).friction > 0.0
+    assert law_of(gd.Fabric(locking_angle=30.0, shear_stiffness=0.0)) == law_of(gd.Fabric(locking_angle=30.0))
+    assert law_of(gd.Fabric(locking_angle=30.0, shear_stiffness=0.01)).friction == 0.0
+    assert law_of(gd.Fabric(locking_angle=30.0, shear_asymmetry=0.2)).friction == 0.0
+
+
 def test_a_ply_that_locks_nowhere_lies_as_it_was_laid():
     surface = shapes.sphere_cap(RADIUS, 60.0, 3.0)
     free = drape(surface, origin=SEED, angle=20.0, pitch=8.0, reach=(48.0, 48.0))
