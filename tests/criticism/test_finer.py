@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib import import_module
 from types import SimpleNamespace
 
@@ -67,6 +68,19 @@ def test_locking_in_place_of_another_costly_effect_is_fitted_on_a_net_of_half_th
     with pytest.raises(StopIteration):
         diagnose.conclude(experiment((1.0, 8.0)), [of], ())
     assert asked == [(("shear-stiffness",), 4.0), (("locking",), 4.0)]
+
+
+@pytest.mark.parametrize(("worse", "kept"), [(1.2, False), (2.0, True)])
+def test_a_finer_net_that_came_to_rest_elsewhere_tells_nothing_and_that_is_said(monkeypatch, worse, kept):
+    meant, old = experiment((1.0, 8.0)), fitted("shear-stiffness")
+    old = replace(old, fit=replace(old.fit, chi2=100.0))
+    new = replace(old, fit=replace(old.fit, chi2=100.0 * worse))
+    monkeypatch.setattr(diagnose, "refined", lambda *_: new)
+    final, model = diagnose._final(meant, old, NO_SCATTER)
+    assert (final is meant, model is old) == (kept, kept)
+    said = diagnose._coarser(meant, final, model)
+    assert bool(said) == kept
+    assert all("the values of shear-stiffness are those of a net of 8 mm" in one for one in said)
 
 
 SLOPES = np.random.default_rng(1).normal(size=(POINTS, 4))  # of the placement and an offset
