@@ -82,7 +82,7 @@ def _row(
         rms_shear=rms_shear,
         cv_error=held_out,
         confounded_with=_confounded(of, name, final),
-        visible=_visible(of, name, final),
+        visible=_visible(experiment, of, name, final),
         selected=selected,
         looked_at_only=model.looked_at_only,
     )
@@ -95,12 +95,17 @@ def _confounded(of: Round, name: str, scatter: Scatter) -> tuple[str, ...]:
     return tuple(n for n, cosine in zip(names, alike, strict=True) if n != name and cosine > ALIKE)
 
 
-def _visible(of: Round, name: str, scatter: Scatter) -> tuple[tuple[str, float | None, str], ...]:
+def _visible(
+    experiment: Experiment, of: Round, name: str, scatter: Scatter
+) -> tuple[tuple[str, float | None, str], ...]:
     trial = of.trial(name)[0]
     signature = beside_base(of.judge, scatter, of.rows, of.base, trial)
     sizes = least_visible(signature, len(of.trials), FAMILY)
     out: list[tuple[str, float | None, str]] = []
     for (p, _), size in zip(trial.parameters_of(name), sizes, strict=True):
         room = max(p.high - p.neutral, p.neutral - p.low)
-        out.append((p.name, float(size) if size < room else None, p.unit))
+        # a threshold of the shear does nothing above the largest
+        least = p.neutral - experiment.top_shear if p.unit == "deg" and p.neutral == p.high else 0.0
+        amount = max(float(size), least)
+        out.append((p.name, amount if amount < room else None, p.unit))
     return tuple(out)

@@ -147,3 +147,12 @@ def test_an_effect_that_takes_long_is_looked_at_once_where_there_is_nothing_for_
         False,
         True,
     ]
+
+
+def test_locking_would_be_seen_at_no_angle_that_the_ply_does_not_reach(plain):
+    surface, measurement, told, _ = plain
+    d = gd.diagnose(surface, measurement, **told, effects=("weave-skew", "locking"))
+    ((name, amount, unit),) = row(d, "locking").visible
+    assert (name, unit) == ("angle", "deg")
+    assert amount is not None
+    assert 1.0 < 90.0 - amount <= d.experiment.top_shear
