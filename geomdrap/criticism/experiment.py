@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.criticism.kept import kept
-from geomdrap.criticism.smooth import smoothed
+from geomdrap.criticism.smooth import Split, smoothed
 from geomdrap.fishnet import Effect, Net, drape
 from geomdrap.fishnet.effect import in_order, surface_with
 
@@ -59,8 +59,8 @@ class Experiment:
     were measured; ``noise`` (m,) their standard deviations, mm or degrees; ``measured`` (m,); vectors hold the true
     entries of ``mask``, channel by channel. ``refused``: why a drape with an effect could not be made at some of the
     values tried, by its name; ``warnings`` of the table. ``frames`` (n, 3, 3): along the warp, across it, and the
-    normal. What is costly is kept: ``surfaces`` with effects on them, the ``coarseness`` of nets, and the last
-    ``costly`` nets.
+    normal. What is costly is kept: ``surfaces`` with effects on them and how their facets were split (``splits``),
+    the ``coarseness`` of nets, and the last ``costly`` nets.
     """
 
     surface: Surface
@@ -78,6 +78,7 @@ class Experiment:
     refused: dict[str, str] = field(default_factory=dict)
     coarseness: dict[str, np.ndarray] = field(default_factory=dict)
     costly: dict[str, Net] = field(default_factory=dict)
+    splits: list[Split] = field(default_factory=list)
 
     def predict(self, effects: Sequence[Effect] = ()) -> np.ndarray:
         """The model's values (m,), NaN where it has none."""
@@ -122,7 +123,11 @@ class Experiment:
         acting = [e for e in effects if e.stage == "surface"]
         others = [e for e in effects if e.stage != "surface"]
         key = "+".join(map(repr_of, in_order(acting)))
-        return kept(self.surfaces, key, lambda: smoothed(surface_with(in_order(acting), self.surface)), KEPT), others
+
+        def make() -> Surface:
+            return smoothed(surface_with(in_order(acting), self.surface), self.splits)
+
+        return kept(self.surfaces, key, make, KEPT), others
 
     def _flat(self, net: Net) -> np.ndarray:
         return flatten(predicted(net, self.measurement, self.frames, self.channels), self.mask)

@@ -16,6 +16,7 @@ Predict = Callable[[np.ndarray], np.ndarray]
 STEPS = 12  # most accepted or refused steps
 SMALL = 0.05  # of chi-square: a step that promises or gains less ends the fit
 LEAST_STEP = 1e-3  # of a parameter's own step, in every parameter: less ends the fit, too
+RAGGED = 1.0  # of chi-square: where a step along fresh slopes promises no more and fails, facets decide
 UNSEEN = 5e-3  # noises, over all values together: a parameter whose own step changes less stays where it is
 
 
@@ -84,6 +85,8 @@ def fit(
         elif not fresh:  # the slopes are worn: take them anew, once for each place
             jacobian = take_slopes(predict, values, measured - filled, steps, low, high)
             fresh = True
+        elif foreseen < RAGGED:
+            break
         else:
             damping = max(4.0 * damping, 0.3)
             if damping > 100.0:

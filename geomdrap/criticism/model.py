@@ -210,11 +210,11 @@ def _hopeless(whiten: Whiten, base: Fitted, after: float, least: float, far: flo
 
 
 def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
-    """A model fitted again, under another noise or without some points, from where it was."""
+    """A model fitted again, under another noise or without some points, from where it was and with its slopes."""
     model = old.model
-    low, high = model.bounds
     predict = predictor(experiment, model)
-    return Fitted(model, fit(predict, experiment.measured, whiten, old.values, model.steps, low, high))
+    fitted = fit(predict, experiment.measured, whiten, old.values, model.steps, *model.bounds, old.fit.slopes)
+    return Fitted(model, fitted)
 
 
 def refined(experiment: Experiment, whiten: Whiten, old: Fitted, ratio: float) -> Fitted:

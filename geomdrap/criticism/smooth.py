@@ -9,6 +9,7 @@ Source: A. Vlachos, J. Peters, C. Boyd and J. L. Mitchell, Curved PN triangles, 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,23 +24,54 @@ MOST_FACETS = 120_000  # after splitting
 LEAST_LIFT = 1e-3  # mm: where no middle moves further, the part is as good as its facets
 
 
-def smoothed(surface: Surface) -> Surface:
-    """The part with its facets split in four and rounded; itself where that makes no difference, or too many."""
+@dataclass(frozen=True, eq=False)
+class Split:
+    """How the facets (m, 3) of a part were split: ``edges`` and ``side`` as from ``quartered``, and what was made."""
+
+    triangles: np.ndarray
+    edges: np.ndarray
+    side: np.ndarray
+    made: Surface
+
+
+def smoothed(surface: Surface, splits: list[Split] | None = None) -> Surface:
+    """The part with its facets split in four and rounded; itself where that makes no difference, or too many.
+
+    What is split is added to ``splits``: the same facets with their vertices elsewhere are not split anew.
+    """
+    if 4 * len(surface.triangles) > MOST_FACETS:
+        return surface
+    known = next((s for s in splits or () if s.triangles is surface.triangles), None)
+    if known is not None:
+        points = _rounded(surface, known.edges, known.side)
+        return surface if points is None else known.made.moved(points)
+    return _split(surface, splits)
+
+
+def _split(surface: Surface, splits: list[Split] | None) -> Surface:
+    """``smoothed`` of a part that was not yet split."""
     from geomdrap.surface import Surface
 
-    faces = surface.triangles
-    if 4 * len(faces) > MOST_FACETS:
+    edges, side, split = quartered(surface.triangles, len(surface.points))
+    points = _rounded(surface, edges, side)
+    if points is None:
         return surface
-    edges, side, split = quartered(faces, len(surface.points))
+    numbers = np.repeat(surface.source_face, 4)
+    made = Surface(points, split, source=surface.source, face_numbers=numbers, notes=surface.notes)
+    # what a surface does to its vertices, as to weld some or to turn facets over, is not done again
+    if splits is not None and np.array_equal(made.points, points) and np.array_equal(made.triangles, split):
+        splits.append(Split(surface.triangles, edges, side, made))
+    return made
+
+
+def _rounded(surface: Surface, edges: np.ndarray, side: np.ndarray) -> np.ndarray | None:
+    """The vertices and the middles of the ``edges``, on the smooth tool; None where all lie as well on the chords."""
     number = side.ravel()
     total = [np.bincount(number, column) for column in _lifts(surface).reshape(-1, 3).T]
     lifts = np.column_stack(total) / np.bincount(number)[:, None]
     if np.linalg.norm(lifts, axis=1).max() < LEAST_LIFT:
-        return surface
-    middles = surface.points[edges].mean(axis=1) + lifts
-    numbers = np.repeat(surface.source_face, 4)
-    points = np.vstack([surface.points, middles])
-    return Surface(points, split, source=surface.source, face_numbers=numbers, notes=surface.notes)
+        return None
+    return np.vstack([surface.points, surface.points[edges].mean(axis=1) + lifts])
 
 
 def note_on(surface: Surface) -> tuple[str, ...]:

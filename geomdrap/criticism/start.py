@@ -34,6 +34,7 @@ SAME, SAME_SHARE = 3.0, 0.02  # of chi-square, or of the misfit: probes this clo
 NOTHING = 1e-6  # of the noise: less is no signature
 BELOW_TOP = (0.85, 0.6)  # of the largest shear: thresholds at which to look once
 BELOW_SEEN = (0.5, 0.75)  # of a large value at which an effect shows: where it may begin to
+TOO_SMALL = 0.1  # noises, over all values together: a look that shows less shows rounding
 LEAST_GAIN = 4.0  # of chi-square under the likely scatter: less is not looked into
 
 
@@ -67,7 +68,8 @@ def glance(
         signature = np.nan_to_num(predict(np.append(base.values, values)) - there)
         both = np.column_stack([base.fit.slopes, signature])
         before, after = (square_beside(likely(residual), likely(s)) for s in (base.fit.slopes, both))
-        seen.append(Glance(values, signature, before - after, square_beside(whiten(residual), whiten(both))))
+        gain = before - after if np.linalg.norm(whiten(signature)) > TOO_SMALL else 0.0
+        seen.append(Glance(values, signature, gain, square_beside(whiten(residual), whiten(both))))
     return max(seen, key=lambda one: one.gain)
 
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 FINE = 0.5  # of the radius: facets in hollows must not be longer, or they are split
+SHALLOW = 0.01  # of the radius: hollows that are filled by less, as by rounded coordinates, are left as they are
 MOST_FACETS = 400_000
 
 
@@ -45,15 +46,15 @@ class Bridging(Effect):
 def closed_surface(surface: Surface, radius: float) -> Surface:
     """The part closed by a ball of ``radius`` mm, its large facets split in hollows; itself if it has none."""
     closed = closed_points(surface, radius)
-    if _longest_lifted(surface, closed) > FINE * radius:
+    if _longest_lifted(surface, closed, SHALLOW * radius) > FINE * radius:
         surface = _split(surface, FINE * radius)
         closed = closed_points(surface, radius)
     return surface.moved(closed) if (closed != surface.points).any() else surface
 
 
-def _longest_lifted(surface: Surface, closed: np.ndarray) -> float:
-    """Longest edge, mm, of the facets of which a vertex moves; 0 where none does."""
-    moves = (closed != surface.points).any(axis=1)[surface.triangles].any(axis=1)
+def _longest_lifted(surface: Surface, closed: np.ndarray, least: float) -> float:
+    """Longest edge, mm, of the facets of which a vertex moves by ``least`` mm; 0 where none does."""
+    moves = (np.linalg.norm(closed - surface.points, axis=1) > least)[surface.triangles].any(axis=1)
     corners = surface.points[surface.triangles[moves]]
     lengths = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
     return float(lengths.max(initial=0.0))

@@ -22,9 +22,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.effects.disc_tree import DiscTree, disc_tree, nearest_within
 from geomdrap.errors import EffectError
 from geomdrap.geodesic.compiled import kernel
-from geomdrap.surface.nearest import NearestTree
 
 if TYPE_CHECKING:
     from geomdrap.surface import Surface
@@ -48,7 +48,7 @@ def closed_points(surface: Surface, radius: float) -> np.ndarray:
     tool = _with_skirt(surface, SKIRT * radius)
     centre = points + radius * surface.vertex_normals
     room = radius * _least_cosine(surface) * (1.0 - TOUCH)
-    lifted = np.flatnonzero(tool.query(centre).distance < room)  # whichever side of it is in the way
+    lifted = np.flatnonzero(cuts(tool, centre, room))  # whichever side of it is in the way
     out = points.copy()
     if len(lifted) == 0:
         return out
@@ -61,22 +61,22 @@ def closed_points(surface: Surface, radius: float) -> np.ndarray:
     return out
 
 
-class Tool(NearestTree):
-    """A part for queries of nearest points; it knows on which side of it a point lies."""
-
-    def __init__(self, points: np.ndarray, triangles: np.ndarray) -> None:
-        super().__init__(points, triangles)
-        a, b, c = points[triangles].swapaxes(0, 1)
-        self.normals = np.cross(b - a, c - a)
-
-    def clearance(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Nearest points (k, 3) to points (k, 3), and their distances (k,), negative behind the tool."""
-        near = self.query(points)
-        behind = ((points - near.point) * self.normals[near.face]).sum(axis=1) < 0.0
-        return near.point, np.where(behind, -near.distance, near.distance)
+def cuts(tool: DiscTree, centre: np.ndarray, radius: np.ndarray) -> np.ndarray:
+    """Whether balls of a ``radius`` (k,) about centres (k, 3) cut the tool."""
+    return nearest_within(tool, centre, radius, first_will_do=True)[0] >= 0
 
 
-def _with_skirt(surface: Surface, width: float) -> Tool:
+def clearance(tool: DiscTree, at: np.ndarray, bound: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Nearest points (k, 3) to places (k, 3), and their distances (k,), negative behind the tool.
+
+    ``bound`` (k,) mm: distances that the nearest ones do not exceed.
+    """
+    face, near, distance = nearest_within(tool, at, bound)
+    behind = ((at - near) * tool.across[face]).sum(axis=1) < 0.0
+    return near, np.where(behind, -distance, distance)
+
+
+def _with_skirt(surface: Surface, width: float) -> DiscTree:
     """The part with a strip beyond its rim that goes on in the plane of the facets."""
     f, k = np.nonzero(surface.neighbours < 0)
     a, b = surface.triangles[f, k], surface.triangles[f, (k + 1) % 3]
@@ -90,11 +90,11 @@ def _with_skirt(surface: Surface, width: float) -> Tool:
     beyond = surface.points[rim] + width * way[rim] / np.maximum(length, 1e-12)
     c, d = (len(surface.points) + part for part in np.split(place, 2))
     strip = np.vstack([np.column_stack([b, a, c]), np.column_stack([b, c, d])])
-    return Tool(np.vstack([surface.points, beyond]), np.vstack([surface.triangles, strip]))
+    return disc_tree(np.vstack([surface.points, beyond]), np.vstack([surface.triangles, strip]))
 
 
 def _allowed_centres(
-    surface: Surface, tool: Tool, radius: float, over_vertices: np.ndarray, lifted: np.ndarray
+    surface: Surface, tool: DiscTree, radius: float, over_vertices: np.ndarray, lifted: np.ndarray
 ) -> np.ndarray:
     """For each lifted vertex the nearest centre at which a ball rests on the part without cutting it (k, 3).
 
@@ -105,7 +105,7 @@ def _allowed_centres(
     resting[lifted] = False
     centres = np.vstack([over_facets, over_vertices[resting]])
     nearest = _nearest_allowed(
-        centres, surface.points[lifted], lambda c: tool.clearance(c)[1] >= radius * (1.0 - TOUCH)
+        centres, surface.points[lifted], lambda c: ~cuts(tool, c, np.full(len(c), radius * (1.0 - TOUCH)))
     )
     if nearest is None:
         raise EffectError(
@@ -162,20 +162,26 @@ def _least_cosine(surface: Surface) -> np.ndarray:
     return np.where(least < SMOOTH_COSINE, 1.0, least)
 
 
-def _nearest_centres(tool: Tool, radius: float, p: np.ndarray, start: np.ndarray) -> np.ndarray:
+def _nearest_centres(tool: DiscTree, radius: float, p: np.ndarray, start: np.ndarray) -> np.ndarray:
     """The allowed centres (k, 3) nearest to points (k, 3), from allowed ones."""
     c, trial = start.copy(), start.copy()
     touched = np.full((len(p), KEPT, 3), np.inf)
     todo = np.arange(len(p))
     for _ in range(ROUNDS):
-        near, distance = tool.clearance(trial[todo])
         here = (c[todo], trial[todo], touched[todo])
+        near, distance = clearance(tool, trial[todo], _known_distance(p[todo], *here[1:], TOUCH * radius))
         going = exchange(p[todo], *here, near, distance, radius)
         c[todo], trial[todo], touched[todo] = here
         todo = todo[going]
         if len(todo) == 0:
             break
     return c
+
+
+def _known_distance(p: np.ndarray, trial: np.ndarray, touched: np.ndarray, more: float) -> np.ndarray:
+    """The distances (k,) of trials (k, 3) from the nearest points of the tool that are known, and ``more``."""
+    known = np.concatenate([p[:, None], touched], axis=1)
+    return np.asarray(np.linalg.norm(known - trial[:, None], axis=2).min(axis=1) + more)
 
 
 @kernel
@@ -260,7 +266,7 @@ def reach_planes(d: np.ndarray, b: np.ndarray, i: int, j: int, k: int) -> tuple[
         si = (b[i] * (1.0 - jk * jk) + b[j] * (ik * jk - ij) + b[k] * (ij * jk - ik)) / det
         sj = (b[i] * (ik * jk - ij) + b[j] * (1.0 - ik * ik) + b[k] * (ij * ik - jk)) / det
         sk = (b[i] * (ij * jk - ik) + b[j] * (ij * ik - jk) + b[k] * (1.0 - ij * ij)) / det
-    if not (si >= 0.0 and sj >= 0.0 and sk >= 0.0):
+    if not (si >= 0.0 and sj >= 0.0 and sk >= 0.0 and si + sj + sk < math.inf):  # planes that coincide reach no end
         return math.nan, math.nan, math.nan
     x, y, z = si * d[i, 0], si * d[i, 1], si * d[i, 2]
     if j >= 0:

@@ -77,18 +77,20 @@ def in_frame(frames: np.ndarray, face: int, other: int, dx: float, dy: float) ->
     return ex / norm, ey / norm
 
 
+KEPT = 2  # views of a surface: a diagnosis has a fine net and a coarse one in turns
 _MADE: WeakKeyDictionary[Surface, dict[float, Mesh]] = WeakKeyDictionary()
 
 
 def mesh_of(surface: Surface, spread: float = 0.0) -> Mesh:
-    """The kernels' view of a surface, kept until another ``spread`` is asked for.
+    """The kernels' view of a surface, kept until ``KEPT`` other values of ``spread`` are asked for.
 
     ``spread`` mm is how far ``bends`` may move curvature; with 0 lines stay straight on the very facets.
     """
     made = _MADE.setdefault(surface, {})
     if spread not in made:
-        made.clear()
         made[spread] = _make(surface, spread)
+        if len(made) > KEPT:
+            del made[next(iter(made))]
     return made[spread]
 
 

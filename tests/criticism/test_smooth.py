@@ -88,3 +88,23 @@ def test_a_net_on_few_facets_comes_nearer_to_that_on_many(heading):
     places = [net.interpolate(u, v)[0] for net in nets]
     before, after = (np.sqrt(np.mean((p - places[2]) ** 2)) for p in places[:2])
     assert after < 0.5 * before
+
+
+def test_the_same_facets_with_their_vertices_elsewhere_are_not_split_anew():
+    part, splits = cap(), []
+    smoothed(part, splits)
+    moved = part.moved(part.points * 1.1)
+    again = smoothed(moved, splits)
+    assert len(splits) == 1
+    np.testing.assert_array_equal(again.points, smoothed(moved).points)
+    np.testing.assert_array_equal(again.triangles, smoothed(moved).triangles)
+    assert smoothed(cap(n=20), splits).triangles.shape == (4 * 2 * 19 * 19, 3)  # other facets are
+    assert len(splits) == 2
+
+
+def test_what_a_surface_welds_is_welded_each_time():
+    """Beside a cut, vertices lie twice at one place; the copies of one part do not stand for the next."""
+    cut, splits = cap().cut([(-20.0, 0.0, 56.0), (20.0, 0.0, 56.0)]), []
+    smoothed(cut, splits)
+    moved = cut.moved(cut.points * 1.1)
+    np.testing.assert_array_equal(smoothed(moved, splits).points, smoothed(moved).points)
