@@ -18,9 +18,10 @@ LOCKED, SOFT = 0.5, 0.5
 how many degrees it sets in."""
 RELIEF, RELIEF_SIDES, KEPT = 1.0, 0.02, 300.0
 """Slip at the crossings: energies of missing the relieved shear, of uneven sides and of a yarn's total length."""
-RESTING = 0.1
-"""Friction on the tool where only a locking angle is given, by the square of the ply's size: a ply that locks moves
-only where it must. Without it nothing says which of all nets that do not lock it is."""
+RESTING = 0.01
+"""Friction at the crossings where only a locking angle is given, as a stiffness about the shear of the ply as it was
+laid: a ply that locks moves only where it must. Without it nothing says which of all nets that do not lock it is, and
+yarns under pressure buckle from node to node."""
 HELD = 1e3  # weight of what is held: the heading of the first warp side
 
 Index = NDArray[np.intp]
@@ -121,7 +122,10 @@ def scaled(block: Block, factor: Array | float, shift: Array | float = 0.0) -> B
 def blocks(
     p: Array, normal: Array, net: Topology, rest: Array, side: float, recipe: Recipe, aim: Array
 ) -> list[Block]:
-    """All residuals of the recipe at the nodes ``p`` (n, 3); ``aim`` (c,): sin γ that slipping crossings go for."""
+    """All residuals of the recipe at the nodes ``p`` (n, 3).
+
+    ``aim`` (c,): sin γ that slipping crossings go for, or, where nothing slips, at which friction holds them.
+    """
     shear = sines(p, net.corners, net.sign)
     if recipe.share:
         return [
@@ -134,16 +138,16 @@ def blocks(
         found.append(scaled(shear, 0.5 * np.sqrt(soft)))
     if recipe.lock:
         found.append(_locked(shear, recipe.lock))
+    if recipe.lock and not recipe.stiffness:
+        found.append(resting(shear, aim))
     if recipe.bending:
         found.append(scaled(turns(p, net.bends, normal), np.sqrt(recipe.bending) / side))
     return found
 
 
-def resting(p: Array, laid: Array, side: float) -> Block:
-    """√RESTING times how far the nodes ``p`` (n, 3) have moved from where they were ``laid``, by the ply's size."""
-    factor = np.sqrt(RESTING / len(p)) / side
-    nodes = np.repeat(np.arange(len(p)), 3)[:, None]
-    return Block(factor * (p - laid).ravel(), nodes, factor * np.tile(np.eye(3), (len(p), 1))[:, None])
+def resting(shear: Block, laid: Array) -> Block:
+    """√RESTING/2 times how far the sines of the shear are from those of the ply as it was ``laid`` (c,)."""
+    return scaled(shear, 0.5 * np.sqrt(RESTING), laid)
 
 
 def _locked(shear: Block, lock: float) -> Block:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from geomdrap.blind.energy import HELD, KEPT, Block, Topology, blocks, resting, sines, strains, topology
+from geomdrap.blind.energy import HELD, KEPT, Block, Topology, blocks, sines, strains, topology
 from geomdrap.blind.recipe import Recipe
 from geomdrap.blind.sheet import Sheet, normals
 from geomdrap.blind.terms import Array
@@ -48,7 +48,6 @@ class _Problem:
         strain = np.asarray(recipe.extension)[net.along]
         self.rest = side * (1.0 + strain)
         self.aim = _relieved(sines(points, net.corners, net.sign).value, recipe)
-        self.laid = points
         self.first = self._first_warp_side()
         chord = points[self.first] - points[seed]
         left = np.cross(np.cross(along_x[seed], along_y[seed]), chord)
@@ -85,9 +84,7 @@ class _Problem:
         return p, normals(self.sheet, xy) if self.recipe.bending else p, px, py
 
     def _blocks(self, p: Array, normal: Array) -> list[Block]:
-        found = [*blocks(p, normal, self.net, self.rest, self.side, self.recipe, self.aim), self._held(p)]
-        alone = self.recipe.lock and not self.recipe.stiffness
-        return [*found, resting(p, self.laid, self.side)] if alone else found
+        return [*blocks(p, normal, self.net, self.rest, self.side, self.recipe, self.aim), self._held(p)]
 
     def _matrix(self, block: Block, px: Array, py: Array) -> Any:
         """The block's derivatives by the plan points, (m, 2n)."""
@@ -124,7 +121,7 @@ class _Problem:
 
 
 def _relieved(sine: Array, recipe: Recipe) -> Array:
-    """sin of γ − share (|γ| − onset)₊ sign γ: the shear that slipping crossings go for."""
+    """sin of γ − share (|γ| − onset)₊ sign γ: the shear that slipping crossings go for; γ itself if none slip."""
     gamma = np.arcsin(np.clip(sine, -0.9999, 0.9999))
     beyond = np.maximum(np.abs(gamma) - np.deg2rad(recipe.onset), 0.0)
     return np.sin(gamma - recipe.share * beyond * np.sign(gamma))

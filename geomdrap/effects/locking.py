@@ -12,14 +12,14 @@ class Locking(Effect):
 
     name = "locking"
     summary = "Shear stops near an angle at which the yarns touch, at the cost of yarn length."
-    equation = "min Σ (l/l0 − 1)² + Σ (|sin γ| − sin angle)²₊/4 over corners + 0.05·Σ |x − x0|²/area of the ply"
+    equation = "min Σ (l/l0 − 1)² over sides + Σ [(|sin γ| − sin angle)²₊ + 0.02·(sin γ − sin γ0)²]/4 over corners"
     physics = (
         "Yarns turn at the crossings until they lie side by side; from there on they would have to be squeezed. "
         "Shear stops near that angle, neighbouring cells shear more, yarns stretch or slide, and finally the ply "
-        "wrinkles, which a net on the tool does not show. Below the angle nothing resists but friction, which holds "
-        "the ply where it was laid (x0): of all nets that do not lock it is the one that has moved least. Together "
-        "with shear-stiffness that takes the place of friction. On a symmetric part the least net may not be "
-        "symmetric; the one found keeps the symmetry."
+        "wrinkles, which a net on the tool does not show. Below the angle nothing resists but friction at the "
+        "crossings, which holds the shear of the ply as it was laid (γ0): of all nets that do not lock it is the one "
+        "that has changed least, and yarns under pressure do not buckle from crossing to crossing. How large that "
+        "friction is hardly matters. Together with shear-stiffness that takes its place."
     )
     source = "locking after P. Boisse et al., Composites Sci. Tech. 71 (2011); penalty as stiff as the yarns"
     stage = "fabric"

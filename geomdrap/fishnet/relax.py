@@ -85,10 +85,7 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
 
 
 def _energy(problem: Problem, x: np.ndarray) -> float:
-    stored = float(energy(x, problem.valid, problem.target, problem.rest_u, problem.rest_v, problem.law))
-    if problem.friction == 0.0:
-        return stored
-    return stored + problem.friction * float(((x - problem.x0)[problem.nodes] ** 2).sum())
+    return float(energy(x, problem.valid, problem.target, problem.rest_u, problem.rest_v, problem.law))
 
 
 def _searched(

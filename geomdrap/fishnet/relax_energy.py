@@ -1,9 +1,10 @@
 """Energy of a net that resists stretching and shear, with its exact first and second derivatives.
 
 E = piece·Σ e² over yarn pieces + yarn·Σ (Σ e)² over whole yarns + Σ W(s) over corners of cells, with the strain
-e = l/c − 1 of a piece, s = sin γ at a corner less a target, and W = ratio/4·(1 ± alpha)·s² + lock/4·(|s| − s_lock)²₊.
-What is held where it was laid costs friction·Σ |x − x0|²/A besides, A the area of the net (see ``relax_problem``).
-Usually piece = 1, and yarn and targets are 0; the other way round yarns slide at their crossings. Lengths and angles
+e = l/c − 1 of a piece, s = sin γ at a corner, s* its target, and
+W = ratio/4·(1 ± alpha)·(s − s*)² + lock/4·(|s| − s_lock)²₊.
+Usually piece = 1, and yarn and targets are 0; with yarn in place of piece, yarns slide at their crossings; with the
+sines of the geometric net for targets, friction holds the shear as it was laid. Lengths and angles
 are those of the straight lines between nodes; c is the length of that line in the geometric net, so that what a chord
 cuts short of a curved yarn counts nowhere.
 """
@@ -27,15 +28,15 @@ class Law(NamedTuple):
     lock_sine: float = 1.0
     piece: float = 1.0
     yarn: float = 0.0
-    friction: float = 0.0
 
 
 @inlined
-def shear_energy(law: Law, s: float) -> tuple[float, float, float]:
+def shear_energy(law: Law, s: float, target: float) -> tuple[float, float, float]:
     """W at the sine s of the shear, and its first two derivatives."""
-    stiff = 0.5 * law.ratio * (1.0 + law.alpha if s > 0.0 else 1.0 - law.alpha)
+    off = s - target
+    stiff = 0.5 * law.ratio * (1.0 + law.alpha if off > 0.0 else 1.0 - law.alpha)
     over = abs(s) - law.lock_sine
-    w, dw, ddw = 0.5 * stiff * s * s, stiff * s, stiff
+    w, dw, ddw = 0.5 * stiff * off * off, stiff * off, stiff
     if over > 0.0:
         w += 0.25 * law.lock * over * over
         dw += 0.5 * law.lock * math.copysign(over, s)
@@ -100,7 +101,7 @@ def energy(
                 for di in range(2):
                     for dj in range(2):
                         s = cosine(warp, i, j + dj, weft, i + di, j)
-                        total += shear_energy(law, s - target[i, j, di, dj])[0]
+                        total += shear_energy(law, s, target[i, j, di, dj])[0]
     return total
 
 
@@ -300,7 +301,7 @@ def derivatives(
             for di in range(2):
                 for dj in range(2):
                     f, lu, lv = cosine(warp, i, j + dj, weft, i + di, j), warp[i, j + dj, 3], weft[i + di, j, 3]
-                    _, dw, ddw = shear_energy(law, f - target[i, j, di, dj])
+                    _, dw, ddw = shear_energy(law, f, target[i, j, di, dj])
                     add_shear_forces(warp, weft, g, size, i, j, di, dj, f, dw)
                     add_corner_stiffness(onto, vectors, k, di, dj, f, lu, lv, ddw)
                     if full:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from geomdrap.fishnet.relax_surface import Footing
 
 ROUNDED_OFF = 1e-13  # of the largest stiffness
+UNSTRAINED = 1e-6  # a strain: forces count against those that it makes at least
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,9 +51,6 @@ def equations_at(problem: Problem, x: np.ndarray, footing: Footing, full: bool) 
         x, basis, problem.valid, problem.target, problem.rest_u, problem.rest_v, problem.law, full
     )
     force, blocks = g[problem.nodes], h[problem.nodes]
-    if problem.friction > 0.0:
-        force += 2.0 * problem.friction * (x - problem.x0)[problem.nodes]
-        blocks[:, 0] += 2.0 * problem.friction * np.einsum("nxa,nxb->nab", bases, bases)
     gradient = along_tangents(force, bases, footing.normal, footing.turning, blocks, full)
     for node, first in ((problem.fixed, 0), (problem.guided, 1)):
         held = np.arange(first, 2)
@@ -60,7 +58,9 @@ def equations_at(problem: Problem, x: np.ndarray, footing: Footing, full: bool) 
     left = float(np.linalg.norm(gradient, axis=1).max())
     whole = problem.law.yarn > 0.0
     slopes = _yarn_slopes(problem, x, bases) if whole else np.zeros((2, 2 * len(bases)))
-    return Equations(gradient.ravel(), blocks, bases, left / max(float(size.max()), 1e-300), slopes)
+    # a net that nothing strains has forces of rounding only
+    least = UNSTRAINED * max(problem.law.piece, problem.law.ratio) / max(problem.rest_u.max(), problem.rest_v.max())
+    return Equations(gradient.ravel(), blocks, bases, left / max(float(size.max()), least), slopes)
 
 
 def _bases(problem: Problem, footing: Footing) -> np.ndarray:

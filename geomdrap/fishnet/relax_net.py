@@ -10,7 +10,7 @@ import numpy as np
 from geomdrap.fishnet.grid import Status
 from geomdrap.fishnet.net import cells_of
 from geomdrap.fishnet.relax import GOOD_ENOUGH, relax
-from geomdrap.fishnet.relax_problem import law_of, pose
+from geomdrap.fishnet.relax_problem import CORNERS, chord_sines, problem_of
 
 ON_RIM = 1e-6  # of the pitch: a node no further beyond the rim is on it
 
@@ -25,7 +25,7 @@ def relaxed(net: Net, start: np.ndarray | None = None) -> Net:
 
     A warning of the net says so where the forces do not come into balance.
     """
-    problem = pose(net, law_of(net.fabric))
+    problem = problem_of(net)
     return as_net(net, problem, relax(problem, net.lattice if start is None else start))
 
 
@@ -81,21 +81,6 @@ def _doubts(net: Net, found: Relaxed) -> tuple[str, ...]:
         f"the net of {net.surface.source} has not come to rest (forces out of balance by {found.unrest:.1g}): the "
         "part has sharp edges, or the fabric locks; use a finer mesh, another pitch, or a smaller blank and compare",
     )
-
-
-CORNERS = np.s_[:-1, :-1], np.s_[:-1, 1:], np.s_[1:, :-1], np.s_[1:, 1:]  # (i, j), (i, j + 1), ... of each cell
-
-
-def chord_sines(x: np.ndarray, valid: np.ndarray) -> np.ndarray:
-    """Sines of the shear at the corners of cells (nu - 1, nv - 1, 2, 2), from the straight lines between nodes."""
-    sines = np.zeros((*valid.shape, 2, 2))
-    for at, corner in enumerate(CORNERS):
-        di, dj = divmod(at, 2)
-        beside_u, beside_v = x[CORNERS[2 - 2 * di + dj]] - x[corner], x[CORNERS[2 * di + 1 - dj]] - x[corner]
-        size = np.linalg.norm(beside_u, axis=2) * np.linalg.norm(beside_v, axis=2)
-        cosine = (beside_u * beside_v).sum(axis=2) / np.where(valid, size, 1.0)
-        sines[:, :, di, dj] = np.where(valid, (1 - 2 * (di ^ dj)) * np.clip(cosine, -1.0, 1.0), 0.0)
-    return sines
 
 
 def chord_shears(x: np.ndarray, valid: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

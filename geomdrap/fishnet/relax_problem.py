@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 DEFAULT_RATIO = 0.003  # shear stiffness where only its asymmetry is given
-FRICTION = 0.05  # on the tool where only a locking angle is given: without it many nets are minimal
+HELD = 0.02  # shear stiffness about the ply as it was laid, where only a locking angle is given
 LOCK_STIFFNESS = 1.0  # of the yarns: resistance to shear beyond the locking angle
 
 
@@ -28,7 +28,7 @@ class Problem:
 
     ``x0`` (nu, nv, 3) is the geometric net, ``nodes`` the places (i, j) of the n that move, ``number`` (nu, nv) of
     these, -1 for others; ``fixed`` node and ``guided`` node, which moves only in the plane through the seed across
-    ``side``, and where they are, ``held`` (2, 3) mm; ``friction`` per mm² of the law on a net of this area.
+    ``side``, and where they are, ``held`` (2, 3) mm.
     """
 
     surface: Surface
@@ -39,7 +39,6 @@ class Problem:
     rest_u: np.ndarray
     rest_v: np.ndarray
     law: Law
-    friction: float
     nodes: tuple[np.ndarray, np.ndarray]
     number: np.ndarray
     fixed: tuple[int, int]
@@ -49,17 +48,25 @@ class Problem:
 
 
 def law_of(fabric: Fabric) -> Law:
-    """The energy of a fabric; where only a locking angle is given, nothing but friction resists below it."""
+    """The energy of a fabric; where only a locking angle is given, friction at the crossings resists below it."""
     angle = fabric.locking_angle
     default = DEFAULT_RATIO if fabric.shear_asymmetry else 0.0
-    ratio = fabric.shear_stiffness or default
+    ratio = fabric.shear_stiffness or default or HELD
     return Law(
         ratio=ratio,
         alpha=fabric.shear_asymmetry or 0.0,
         lock=0.0 if angle is None else LOCK_STIFFNESS,
         lock_sine=1.0 if angle is None else math.sin(math.radians(angle)),
-        friction=0.0 if ratio else FRICTION,
     )
+
+
+def problem_of(net: Net) -> Problem:
+    """The problem of relaxing a net of its fabric. Raises DrapeError where the seed has no cell beside it."""
+    problem = pose(net, law_of(net.fabric))
+    if net.fabric.shear_stiffness or net.fabric.shear_asymmetry:
+        return problem
+    # without a stiffness in shear many nets are minimal, and yarns under pressure buckle from node to node
+    return replace(problem, target=chord_sines(problem.x0, problem.valid))
 
 
 def pose(net: Net, law: Law) -> Problem:
@@ -86,7 +93,6 @@ def pose(net: Net, law: Law) -> Problem:
     x = np.full(lattice.shape, np.nan)
     x[nodes] = stand(surface, normals, lattice[nodes]).lifted
     rest_u, rest_v = (np.linalg.norm(np.diff(x, axis=axis), axis=2) for axis in (0, 1))
-    area = float(valid.sum() * rest_u[warp].mean() * rest_v[weft].mean())
     return Problem(
         surface=surface,
         corner_normals=normals,
@@ -96,7 +102,6 @@ def pose(net: Net, law: Law) -> Problem:
         rest_u=np.where(warp, rest_u, 0.0),
         rest_v=np.where(weft, rest_v, 0.0),
         law=law,
-        friction=law.friction / area,
         nodes=nodes,
         number=number,
         fixed=(i, j),
@@ -104,3 +109,18 @@ def pose(net: Net, law: Law) -> Problem:
         held=lattice[[i, beside[0]], j],
         side=np.cross(net.normal0, net.warp0),
     )
+
+
+CORNERS = np.s_[:-1, :-1], np.s_[:-1, 1:], np.s_[1:, :-1], np.s_[1:, 1:]  # (i, j), (i, j + 1), ... of each cell
+
+
+def chord_sines(x: np.ndarray, valid: np.ndarray) -> np.ndarray:
+    """Sines of the shear at the corners of cells (nu - 1, nv - 1, 2, 2), from the straight lines between nodes."""
+    sines = np.zeros((*valid.shape, 2, 2))
+    for at, corner in enumerate(CORNERS):
+        di, dj = divmod(at, 2)
+        beside_u, beside_v = x[CORNERS[2 - 2 * di + dj]] - x[corner], x[CORNERS[2 * di + 1 - dj]] - x[corner]
+        size = np.linalg.norm(beside_u, axis=2) * np.linalg.norm(beside_v, axis=2)
+        cosine = (beside_u * beside_v).sum(axis=2) / np.where(valid, size, 1.0)
+        sines[:, :, di, dj] = np.where(valid, (1 - 2 * (di ^ dj)) * np.clip(cosine, -1.0, 1.0), 0.0)
+    return sines
