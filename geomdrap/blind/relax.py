@@ -15,9 +15,9 @@ from geomdrap.blind.sheet import Sheet, normals
 from geomdrap.blind.terms import Array
 from geomdrap.errors import GeomdrapError
 
-STEPS = 100
+STEPS = 300
 SMALL_STEP = 1e-6  # of a side
-SETTLED, SETTLED_LOCKED = 1e-6, 1e-4  # of the energy: the least share worth another step
+SETTLED = 1e-9  # of the energy, the least share worth another step: softly held nets still turn at 1e-6
 DAMPED = 1e-2  # damping above which a small gain says nothing
 
 
@@ -131,13 +131,12 @@ def _minimum(problem: _Problem, xy: Array) -> Array:
     """Levenberg-Marquardt from the plan points ``xy`` (n, 2)."""
     energy = problem.energy(xy)
     damping = 1e-6
-    enough = SETTLED_LOCKED if problem.recipe.lock else SETTLED  # where it locks, energy falls on without a move
     terms = problem.linear(xy)
     for _ in range(STEPS):
         step = _step(*terms, damping, problem.seed)
         trial = xy + step.reshape(-1, 2)
         after = problem.energy(trial)
-        settled = abs(energy - after) <= enough * energy and damping < DAMPED
+        settled = abs(energy - after) <= SETTLED * energy and damping < DAMPED
         if after <= energy:
             xy, energy, damping = trial, after, max(damping / 5.0, 1e-9)
             if settled:

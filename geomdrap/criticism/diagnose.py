@@ -18,7 +18,23 @@ from geomdrap.criticism.experiment import Experiment, Layup
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
 from geomdrap.criticism.locked import LOCKING, doubted, locks, shear_stops
-from geomdrap.criticism.model import Fitted, fit_placement, refined, refit, unfitted, with_fresh_slopes
+from geomdrap.criticism.model import (
+    Fitted,
+    doubted_for_facets,
+    fit_placement,
+    refined,
+    refit,
+    unfitted,
+    with_fresh_slopes,
+)
+    Fitted,
+    doubted_for_facets,
+    fit_placement,
+    refined,
+    refit,
+    unfitted,
+    with_fresh_slopes,
+)
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round, judge_of, try_effects
 from geomdrap.criticism.table import tried_of, values_of
@@ -192,7 +208,8 @@ def _final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Exp
         return (finer, better) if better.fit.chi2 <= ELSEWHERE * model.fit.chi2 else (experiment, model)
     if scatter.size > 0.0 and whole:
         model = refit(experiment, whiten, model)
-    return experiment, with_fresh_slopes(experiment, model)
+    model = with_fresh_slopes(experiment, model)
+    return experiment, doubted_for_facets(experiment, whiten, model) if whole else model
 
 
 def _coarser(meant: Experiment, final: Experiment, model: Fitted) -> tuple[str, ...]:

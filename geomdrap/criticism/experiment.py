@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 CHANNELS = ("along", "across", "normal", "shear", "warp", "weft")
 KEPT = 12  # surfaces with effects on them that are kept, and corrections of coarse nets
 KEPT_NETS = 3
+ALIKE = 0.3  # of their typical sizes: values differ by less where a net is relaxed from another one
 TOP = 97.0  # percentile of the shear that counts as the largest
 FINE, COARSE = 7000, 900  # nodes of the net, for what costs milliseconds and for what costs seconds
 
@@ -79,6 +80,8 @@ class Experiment:
     coarseness: dict[str, np.ndarray] = field(default_factory=dict)
     costly: dict[str, Net] = field(default_factory=dict)
     splits: list[Split] = field(default_factory=list)
+    last: dict[str, Net] = field(default_factory=dict)
+    on_facets: bool = False
 
     def predict(self, effects: Sequence[Effect] = ()) -> np.ndarray:
         """The model's values (m,), NaN where it has none."""
@@ -109,13 +112,32 @@ class Experiment:
         if not any(e.costly for e in effects):
             return self._draped(effects, pitch)
         key = f"{pitch!r} {'+'.join(map(repr_of, effects))}"
-        return kept(self.costly, key, lambda: self._draped(effects, pitch), KEPT_NETS)
+        return kept(self.costly, key, lambda: self._relaxed(effects, pitch), KEPT_NETS)
 
-    def _draped(self, effects: Sequence[Effect], pitch: float) -> Net:
-        lay = self.layup
-        surface, others = self._surface_under(effects)
+    def _relaxed(self, effects: Sequence[Effect], pitch: float) -> Net:
+        """A net of what is costly, from the last one with the same effects if that is much like it.
+
+        Over a longer way it might be held back in another balance than the one that a drape finds.
+        """
+        names = f"{pitch!r} {'+'.join(e.name for e in in_order(effects))}"
+        last = self.last.get(names)
+        near = last is not None and _alike(last.effects, in_order(effects))
+        net = self._draped(effects, pitch, last if near else None)
+        if not net.warnings:
+            self.last[names] = net
+        return net
+
+    def _draped(self, effects: Sequence[Effect], pitch: float, near: Net | None = None) -> Net:
+        lay, (surface, others) = self.layup, self._surface_under(effects)
         return drape(
-            surface, lay.origin, lay.angle, pitch, effects=others, reference=lay.reference, project=lay.project
+            surface,
+            lay.origin,
+            lay.angle,
+            pitch,
+            effects=others,
+            reference=lay.reference,
+            project=lay.project,
+            near=near,
         )
 
     def _surface_under(self, effects: Sequence[Effect]) -> tuple[Surface, list[Effect]]:
@@ -125,7 +147,8 @@ class Experiment:
         key = "+".join(map(repr_of, in_order(acting)))
 
         def make() -> Surface:
-            return smoothed(surface_with(in_order(acting), self.surface), self.splits)
+            surface = surface_with(in_order(acting), self.surface)
+            return surface if self.on_facets else smoothed(surface, self.splits)
 
         return kept(self.surfaces, key, make, KEPT), others
 
@@ -135,6 +158,11 @@ class Experiment:
     def finer(self) -> Experiment:
         """The same experiment with the net for what is costly twice as fine, but no finer than the other one."""
         return replace(self, pitches=(self.pitches[0], max(0.5 * self.pitches[1], self.pitches[0])), coarseness={})
+
+    def unsmoothed(self) -> Experiment:
+        """The same experiment with nets on the facets themselves, not on the smooth tool that they stand for."""
+        kept: dict[str, dict[str, object]] = {name: {} for name in ("surfaces", "coarseness", "costly", "last")}
+        return replace(self, on_facets=True, **kept)  # type: ignore[arg-type]
 
     def noise_by_kind(self) -> tuple[float | None, float | None, float | None]:
         """Typical noise of positions (mm), shear and directions (degrees); None where not measured."""
@@ -153,6 +181,13 @@ class Experiment:
     def point_of(self) -> np.ndarray:
         """Number of the point of each value (m,)."""
         return np.nonzero(self.mask.T)[1]
+
+
+def _alike(some: Sequence[Effect], others: Sequence[Effect]) -> bool:
+    """Whether all values of the same effects differ by less than ``ALIKE`` of their typical sizes."""
+    sizes = [abs(q.typical - q.neutral) or abs(q.typical) for e in some for q in e.parameters]
+    values = [[e.values[q.name] for e in effects for q in e.parameters] for effects in (some, others)]
+    return all(abs(a - b) <= ALIKE * size for a, b, size in zip(*values, sizes, strict=True))
 
 
 def repr_of(effect: Effect) -> str:

@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 Whiten = Callable[[np.ndarray], np.ndarray]
 
 STEP = 0.1  # of a parameter's typical size: the differences with which slopes are taken
-REFINEMENTS = 3  # steps on a finer net
-FEW_STEPS = 7  # of a fit whose every drape is costly
+PLACED = 3  # parameters of the placement, before all others
+REFINEMENTS = 5  # steps on a finer net
+FEW_STEPS, MORE_STEPS = 7, 18  # of a fit whose every drape is costly, and if it is the best so far
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
 HOPELESS = 0.5  # of the way from the best model back to the base
 FAR = 0.1  # the same, where the best model leaves only noise and a few values were probed
@@ -78,7 +79,8 @@ class Model:
 class Fitted:
     """A model fitted to an experiment: ``values`` (p,), and the fit's ``residual`` and ``slopes``, ``chi2``.
 
-    ``doubt`` (p,): standard deviations that the pitch of the net adds to the values; None where it was not measured.
+    ``doubt`` (p,): standard deviations that the pitch of the net or the facets of the part add to the values; None
+    where that was not measured.
     ``looked_at_only``: the last effect was looked at once and promised too little for more.
     """
 
@@ -170,7 +172,12 @@ def add_effect(
         neutral = np.append(base.values, [p.neutral for p in kind.parameters])
         return Fitted(model, Fit(neutral, base.fit.residual, slopes, base.fit.chi2))
     most = FEW_STEPS if kind.costly else STEPS
-    return Fitted(model, fit(predict, experiment.measured, whiten, start, model.steps, low, high, slopes, most))
+    found = fit(predict, experiment.measured, whiten, start, model.steps, low, high, slopes, most)
+    if kind.costly and found.chi2 < least and not _is_noise(found.chi2, len(found.residual)):
+        # the best so far, and still on its way: heading and stiffness make up for each other along a bent valley
+        way = found.values, model.steps, low, high, found.slopes, MORE_STEPS
+        found = fit(predict, experiment.measured, whiten, *way)
+    return Fitted(model, found)
 
 
 def _not_fitted(model: Model, base: Fitted, seen: Glance) -> Fitted:
@@ -223,27 +230,18 @@ def refined(experiment: Experiment, whiten: Whiten, old: Fitted, ratio: float) -
     Nets are of second order in the pitch: of what a pitch ``ratio`` times smaller changed in the values,
     1/(ratio² - 1) is left, a third where it was halved. Where no step was taken, nothing is known of it.
     """
-    predict = predictor(experiment, old.model)
-    low, high = old.model.bounds
-    values = old.values
-    residual = _filled(experiment.measured - predict(values), old.fit.residual)
-    for _ in range(REFINEMENTS):
-        step = np.linalg.lstsq(whiten(old.fit.slopes), whiten(residual), rcond=1e-9)[0]
-        there = np.clip(values + step, low, high)
-        new = _filled(experiment.measured - predict(there), residual)
-        if not (whiten(new) ** 2).sum() < (whiten(residual) ** 2).sum():
-            break
-        values, residual = there, new
-    lost = np.isnan(old.fit.residual)
-    chi2 = float((whiten(residual) ** 2).sum())
-    fit = Fit(values, np.where(lost, np.nan, residual), old.fit.slopes, chi2)
-    measured = ratio > 1.0 and values is not old.values
-    return Fitted(old.model, fit, np.abs(values - old.values) / (ratio**2 - 1.0) if measured else None)
-
-
-def _filled(residual: np.ndarray, before: np.ndarray) -> np.ndarray:
-    """Residuals, those before where there are none, 0 where there never were."""
-    return np.nan_to_num(np.where(np.isnan(residual), before, residual))
+    model, found = old.model, old.fit
+    predict = predictor(experiment, model)
+    low, high = model.bounds
+    # how the heading of the first side turns the net depends on that side's length: the ply is placed anew first
+    own = slice(PLACED, None)
+    held = low.copy(), high.copy()
+    held[0][own] = held[1][own] = old.values[own]
+    for bounds in (held, (low, high)):
+        way = found.values, model.steps, *bounds, found.slopes, REFINEMENTS
+        found = fit(predict, experiment.measured, whiten, *way)
+    moved = np.abs(found.values - old.values)
+    return Fitted(model, found, moved / (ratio**2 - 1.0) if ratio > 1.0 and moved.any() else None)
 
 
 def with_fresh_slopes(experiment: Experiment, old: Fitted) -> Fitted:
@@ -258,3 +256,16 @@ def with_fresh_slopes(experiment: Experiment, old: Fitted) -> Fitted:
         change = (predict(ends[1]) - predict(ends[0])) / (ends[1][k] - ends[0][k])
         slopes[:, k] = np.where(np.isfinite(change), change, slopes[:, k])
     return replace(old, fit=replace(old.fit, slopes=slopes))
+
+
+def doubted_for_facets(experiment: Experiment, whiten: Whiten, model: Fitted) -> Fitted:
+    """The model with what the facets of the part leave in doubt of its values.
+
+    Chords are of second order: what is left after every facet was split in four and rounded is a third of what that
+    changed.
+    """
+    smooth, rough = (predictor(e, model.model)(model.values) for e in (experiment, experiment.unsmoothed()))
+    slopes = whiten(model.fit.slopes)
+    norm = np.linalg.norm(slopes, axis=0) + 1e-300
+    step = np.linalg.lstsq(slopes / norm, whiten(np.nan_to_num(smooth - rough)), rcond=1e-9)[0] / norm
+    return replace(model, doubt=np.abs(step) / 3.0)

@@ -30,6 +30,7 @@ FALLING = (0.3, 0.6, 0.9, 1.2, 1.5)  # of the way from a parameter's greatest va
 THRESHOLDS = (0.95, 0.8, 0.65, 0.5)  # of the largest shear
 SHAPES = (0.05, 0.2, 0.4, 0.6)  # of the range of a parameter that does nothing alone
 HALVINGS = 3  # of the gaps between probes
+TURNS = (-16.0, -12.0, -8.0, -4.0, 0.0, 4.0, 8.0, 12.0, 16.0)  # degrees: headings that are tried
 SAME, SAME_SHARE = 3.0, 0.02  # of chi-square, or of the misfit: probes this close do equally well
 NOTHING = 1e-6  # of the noise: less is no signature
 BELOW_TOP = (0.85, 0.6)  # of the largest shear: thresholds at which to look once
@@ -137,29 +138,37 @@ def start_values(
             (_scaled(shape, own, acting, signature, whiten, residual, shifts) for shape in _shapes(own, acting)),
             key=misfit,
         )
-    return _best_place(experiment, predict, whiten, base, best)
+    meant = base.values.copy()
+    meant[:3] = 0.0
+    starts = [(base.values, best), (meant, best)]  # a base without the effect may have gone far astray for it
+    if make(effect).acts_at_once:
+        # such a net turns as a whole about its seed, and the heading of its first side holds it but softly
+        typical = np.array([q.typical for q in own])
+        starts += [(np.array([0.0, 0.0, turn, *meant[3:]]), typical) for turn in TURNS]
+    return _best_start(experiment, predict, whiten, base, starts)
 
 
-def _best_place(
+def _best_start(
     experiment: Experiment,
     predict: Callable[[np.ndarray], np.ndarray],
     whiten: Whiten,
     base: Fitted,
-    best: np.ndarray,
+    starts: Sequence[tuple[np.ndarray, np.ndarray]],
 ) -> np.ndarray:
-    """Values of the base to go with values ``best`` of a new effect: from its own, or from the placement as meant.
+    """The best of the ``starts``, values of the base and of a new effect, after the step that the base's slopes ask.
 
-    A base without the effect may have gone far astray to make up for it.
+    The step is left out where it does no good.
     """
     shifts = whiten(base.fit.slopes)
-    meant = base.values.copy()
-    meant[:3] = 0.0
-    starts = []
-    for values in (base.values, meant):
-        left = whiten(np.nan_to_num(experiment.measured - predict(np.append(values, best))))
-        step = np.linalg.lstsq(shifts, left, rcond=1e-9)[0]
-        starts.append((square_beside(left, shifts), np.append(values + step, best)))
-    return min(starts, key=lambda start: start[0])[1]
+
+    def left(values: np.ndarray) -> np.ndarray:
+        return whiten(np.nan_to_num(experiment.measured - predict(values)))
+
+    known = [(left(np.append(values, own)), np.append(values, own)) for values, own in starts]
+    white, start = min(known, key=lambda one: square_beside(one[0], shifts))
+    moved = start.copy()
+    moved[: shifts.shape[1]] += np.linalg.lstsq(shifts, white, rcond=1e-9)[0]
+    return moved if (left(moved) ** 2).sum() < (white**2).sum() else start
 
 
 def _narrowed(

@@ -52,6 +52,7 @@ def drape(
     project: bool = False,
     warp_guide: Sequence[Sequence[float]] | np.ndarray | None = None,
     weft_guide: Sequence[Sequence[float]] | np.ndarray | None = None,
+    near: Net | None = None,
 ) -> Net:
     """Drape a fabric over a surface from a seed.
 
@@ -61,7 +62,8 @@ def drape(
     along warp and weft, mm; ``effects`` act before and after (see ``Effect``); ``project`` allows an origin further
     than a pitch from the surface. ``warp_guide`` and ``weft_guide``, points (k, 3) mm of curves on the part, steer
     the generators along them: the origin is then the point of the guide nearest to ``origin``, or where the two
-    cross, and the warp runs along its guide whatever the ``angle``.
+    cross, and the warp runs along its guide whatever the ``angle``. ``near`` is a net of a ply much like this one:
+    one of least energy is sought from where that lies, which takes less time.
     Raises SurfaceError where the part cannot be draped, DrapeError for an impossible seed, heading, pitch or
     blank.
 
@@ -102,7 +104,7 @@ def drape(
     _require_cells(grid, part, pitch)
     net = _as_net(surface, part, start, angle, pitch, reach, fabric, extent, mesh, grid, notes)
     if fabric.relaxes:
-        net = relaxed(net)
+        net = relaxed(net, near)
     return replace(net_with(acting, net), effects=acting, guided=guides is not None)
 
 

@@ -20,13 +20,38 @@ if TYPE_CHECKING:
     from geomdrap.fishnet.relax_problem import Problem
 
 
-def relaxed(net: Net, start: np.ndarray | None = None) -> Net:
-    """The net of least energy of ``net.fabric``, from the geometric net or from nodes ``start`` (nu, nv, 3) mm.
+def relaxed(net: Net, near: Net | None = None) -> Net:
+    """The net of least energy of ``net.fabric``, from the geometric net or from where a net much like it lies.
 
     A warning of the net says so where the forces do not come into balance.
     """
     problem = problem_of(net)
-    return as_net(net, problem, relax(problem, net.lattice if start is None else start))
+    return as_net(net, problem, relax(problem, net.lattice if near is None else laid_on(net, near)))
+
+
+def laid_on(net: Net, near: Net) -> np.ndarray:
+    """Nodes (nu, nv, 3) mm of a net, moved to where those of a net ``near`` of the same pitch lie.
+
+    Nodes that the other net has not go the way of the nearest that it has.
+    """
+    from scipy.ndimage import distance_transform_edt
+
+    other = np.full(net.lattice.shape, np.nan)
+    (i, k), (j, m) = (_same(line, there) for line, there in ((net.u, near.u), (net.v, near.v)))
+    other[np.ix_(i, j)] = near.lattice[np.ix_(k, m)]
+    way = other - net.lattice
+    known = np.isfinite(way).all(axis=2)
+    if not known.any():
+        return net.lattice
+    rows, columns = distance_transform_edt(~known, return_distances=False, return_indices=True)
+    return np.asarray(net.lattice + way[rows, columns])
+
+
+def _same(line: np.ndarray, there: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers of the yarns of two lines (n,), (m,) mm that lie at the same distance from the seed."""
+    one, other = (np.round(x / abs(line[1] - line[0])).astype(int) for x in (line, there))
+    _, i, k = np.intersect1d(one, other, return_indices=True)
+    return i, k
 
 
 def as_net(net: Net, problem: Problem, found: Relaxed) -> Net:

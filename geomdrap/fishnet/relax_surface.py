@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 CREASE_COSINE = math.cos(math.radians(30.0))
+ON_EDGE = 1e-9  # share of the third corner: a place where it has less is on the edge
 
 
 @kernel
@@ -76,7 +77,7 @@ class Footing(NamedTuple):
 
 
 def stand(surface: Surface, corner_normals: np.ndarray, points: np.ndarray, last: Footing | None = None) -> Footing:
-    """Nearest places of the surface; beyond its rim it goes on in the plane of the facets there.
+    """Nearest places of the surface; beyond its rim it goes on in its tangent planes there, without a step.
 
     ``corner_normals`` (m, 3, 3) are its ``smooth_normals``. Nodes that have moved a little are looked for from where
     they stood ``last``.
@@ -105,7 +106,7 @@ def footing(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """The rest of a ``Footing`` over the places ``point`` (n, 3) of faces (n,) next to goals (n, 3).
 
-    Where a goal lies beyond the rim ``point`` is moved there, in the plane of the facet.
+    Where a goal lies beyond the rim ``point`` is moved there, in the tangent plane at the rim.
     """
     lifted, normal, outside = np.empty_like(point), np.zeros_like(point), np.zeros(len(point))
     turning = np.zeros((len(point), 3, 3))
@@ -114,6 +115,7 @@ def footing(
         nx, ny, nz = normals[f, 0], normals[f, 1], normals[f, 2]
         px, py, pz = point[n, 0], point[n, 1], point[n, 2]
         lx = ly = lz = 0.0
+        on_rim = False
         for k in range(3):
             o, e, t = triangles[f, k], triangles[f, (k + 1) % 3], triangles[f, (k + 2) % 3]
             ex = (vertices[t, 0] - vertices[e, 0]) / (2.0 * areas[f])
@@ -122,6 +124,7 @@ def footing(
             hx, hy, hz = ny * ez - nz * ey, nz * ex - nx * ez, nx * ey - ny * ex  # gradient of the corner's share
             ax, ay, az = px - vertices[o, 0], py - vertices[o, 1], pz - vertices[o, 2]
             share = 1.0 + hx * ax + hy * ay + hz * az
+            on_rim |= neighbours[f, (k + 1) % 3] < 0 and share < ON_EDGE
             cx, cy, cz = corner_normals[f, k, 0], corner_normals[f, k, 1], corner_normals[f, k, 2]
             depth = -0.5 * share * (cx * ax + cy * ay + cz * az)
             lx += depth * cx
@@ -135,12 +138,20 @@ def footing(
                 turning[n, r, 2] += c * hz
         size = math.sqrt(normal[n, 0] ** 2 + normal[n, 1] ** 2 + normal[n, 2] ** 2)
         normal[n] /= size
-        if neighbours[f, 0] < 0 or neighbours[f, 1] < 0 or neighbours[f, 2] < 0:
+        if on_rim:  # from where it goes straight on, along the tangent planes there
+            mx, my, mz = normal[n, 0], normal[n, 1], normal[n, 2]
             bx, by, bz = goal[n, 0] - px, goal[n, 1] - py, goal[n, 2] - pz
-            up = bx * nx + by * ny + bz * nz
-            bx, by, bz = bx - up * nx, by - up * ny, bz - up * nz
-            outside[n] = math.sqrt(bx * bx + by * by + bz * bz)
-            px, py, pz = px + bx, py + by, pz + bz
+            up = bx * mx + by * my + bz * mz
+            bx, by, bz = bx - up * mx, by - up * my, bz - up * mz
+            away = math.sqrt(bx * bx + by * by + bz * bz)
+            outside[n] = away
+            if away > 0.0:
+                px, py, pz = px + bx, py + by, pz + bz
+                for r in range(3):
+                    out = (turning[n, r, 0] * bx + turning[n, r, 1] * by + turning[n, r, 2] * bz) / (away * away)
+                    turning[n, r, 0] -= out * bx
+                    turning[n, r, 1] -= out * by
+                    turning[n, r, 2] -= out * bz
             point[n, 0], point[n, 1], point[n, 2] = px, py, pz
         lifted[n, 0], lifted[n, 1], lifted[n, 2] = px + lx, py + ly, pz + lz
     return lifted, face, normal, turning, outside

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from importlib import import_module
+from itertools import chain, repeat
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,7 +14,7 @@ from geomdrap.criticism.evidence import Evidence
 from geomdrap.criticism.experiment import Experiment, Layup
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.likelihood import NO_SCATTER
-from geomdrap.criticism.model import Fitted, Model, refined
+from geomdrap.criticism.model import Fitted, Model, doubted_for_facets, refined
 from geomdrap.criticism.search import Round
 
 diagnose = import_module("geomdrap.criticism.diagnose")  # the package's own name for it is the function
@@ -119,8 +120,27 @@ def test_without_a_finer_net_no_doubt_is_known():
 def test_where_the_finer_net_takes_no_step_no_doubt_is_known(monkeypatch):
     old, net = found_at(4.0), OfSecondOrder(2.0)
     here = net.predict(old.model.built(old.values))
-    answers = iter([here, np.full(POINTS, np.nan)])
+    answers = chain([here], repeat(np.full(POINTS, np.nan)))
     monkeypatch.setattr(net, "predict", lambda effects: next(answers))
     got = refined(net, lambda a: a, old, 2.0)
     np.testing.assert_array_equal(got.values, old.values)
     assert got.doubt is None
+
+
+class Smooth:
+    """An experiment whose net is 4 PER_PITCH off on facets, and PER_PITCH where these are rounded."""
+
+    def __init__(self, off=1.0):
+        self.off, self.refused = off, {}
+
+    def unsmoothed(self):
+        return Smooth(4.0)
+
+    def predict(self, effects):
+        values = np.array([v for e in effects for v in e.values.values()])
+        return SLOPES @ (values + self.off * PER_PITCH)
+
+
+def test_facets_leave_in_doubt_what_rounding_them_has_not_mended():
+    got = doubted_for_facets(Smooth(), lambda a: a, found_at(4.0))
+    np.testing.assert_allclose(got.doubt, np.abs(PER_PITCH))

@@ -12,7 +12,9 @@ import geomdrap as gd
 from geomdrap.fishnet.dissection import AFTER
 from geomdrap.fishnet.relax import relax
 from geomdrap.fishnet.relax_energy import Law, derivatives, energy
-from geomdrap.fishnet.relax_problem import HELD, chord_sines, law_of, pose, problem_of
+from geomdrap.fishnet.relax_net import laid_on
+from geomdrap.fishnet.relax_problem import HELD, chord_sines, pose, problem_of
+from geomdrap.fishnet.relax_surface import smooth_normals, stand
 from geomdrap.surface import shapes
 
 RADIUS = 80.0
@@ -288,3 +290,40 @@ def test_nodes_beyond_the_rim_are_off_the_part():
     np.testing.assert_array_equal(net.status == 1, present)
     assert net.surface.nearest(net.points[present]).distance.max() < 1e-5
     assert (net.face >= 0).sum() == present.sum()
+
+
+def test_a_net_relaxed_from_one_much_like_it_is_the_same():
+    surface = shapes.sphere_cap(RADIUS, 60.0, 3.0)
+    one, other = (
+        gd.drape(surface, SEED, angle, 6.0, effects=[gd.effects.make("shear-stiffness", ratio=ratio)], project=True)
+        for angle, ratio in ((20.0, 0.003), (20.4, 0.0035))
+    )
+    near = gd.drape(surface, SEED, 20.4, 6.0, effects=other.effects, project=True, near=one)
+    assert not near.warnings
+    assert np.nanmax(np.linalg.norm(near.points - other.points, axis=2)) < 1e-3
+    rounds = [int(net.notes[-1].split()[-2]) for net in (other, near)]
+    assert rounds[1] <= rounds[0]
+
+
+def test_yarns_that_the_other_net_has_not_go_the_way_of_their_neighbours():
+    plane = shapes.plane(120.0, 100.0, 10.0)
+    small = gd.drape(plane, (1.0, 0.0, 0.0), 0.0, 10.0, reach=(20.0, 20.0))
+    large = gd.drape(plane, (0.0, 0.0, 0.0), 0.0, 10.0, reach=(40.0, 30.0))
+    start = laid_on(large, small)
+    known = np.isfinite(large.lattice)
+    np.testing.assert_allclose((start - large.lattice)[known].reshape(-1, 3), [[1.0, 0.0, 0.0]] * (known.sum() // 3), atol=1e-9)
+
+
+def test_beyond_the_rim_the_surface_goes_on_without_a_step():
+    cap = shapes.sphere_cap(RADIUS, 60.0, 6.0)
+    normals = smooth_normals(cap.triangles, cap.normals, cap.corner_angles, len(cap.points))
+    angle = np.linspace(0.0, np.pi, 4001)
+    radius = np.linalg.norm(cap.points[:, :2], axis=1).max() + 4.0
+    goal = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(len(angle), cap.points[:, 2].min())])
+    standing = stand(cap, normals, goal)
+    assert (standing.outside > 1.0).all()
+    step = np.linalg.norm(np.diff(standing.lifted, axis=0), axis=1)
+    assert step.max() < 2.0 * np.linalg.norm(np.diff(goal, axis=0), axis=1).max()
+    out = goal[:, :2] / radius
+    away = (standing.turning[:, :, :2] * out[:, None]).sum(axis=2)
+    assert abs(away).max() < 0.2 * abs(standing.turning).max()  # straight on, but along the rim it turns
