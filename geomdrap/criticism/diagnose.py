@@ -27,14 +27,6 @@ from geomdrap.criticism.model import (
     unfitted,
     with_fresh_slopes,
 )
-    Fitted,
-    doubted_for_facets,
-    fit_placement,
-    refined,
-    refit,
-    unfitted,
-    with_fresh_slopes,
-)
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round, judge_of, try_effects
 from geomdrap.criticism.table import tried_of, values_of
