@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from geomdrap.blind.recipe import Recipe
 from geomdrap.blind.terms import Array
 
-LOCKED, SOFT = 0.5, 0.5
+LOCKED, SOFT = 0.5, 0.1
 """Stiffness beyond the locking angle, energy per rad² and corner: sides give way before the shear does; and over
-how many degrees it sets in."""
+how many degrees it sets in, few, or plies lock before their angle."""
 RELIEF, RELIEF_SIDES, KEPT = 1.0, 0.02, 300.0
 """Slip at the crossings: energies of missing the relieved shear, of uneven sides and of a yarn's total length."""
 RESTING = 0.01

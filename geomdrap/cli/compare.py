@@ -28,6 +28,11 @@ COMPARE_OUTPUTS = ("json", "csv", "vtu", "png")  # the keys of export.compare_ou
 @table_options
 @reading_options
 @effect_options
+@click.option(
+    "--facets",
+    is_flag=True,
+    help="Drape on the facets themselves, as other tools do, not on the smooth tool that they stand for.",
+)
 @folder_option("compare", "Folder for the result files; it is made if it is missing.")
 @click.option(
     "--outputs",
@@ -47,6 +52,7 @@ def compare(
     effect_texts: tuple[str, ...],
     model: Path | None,
     plugins: tuple[Path, ...],
+    facets: bool,
     as_json: bool,
     quiet: bool,
     **asked: Any,
@@ -56,7 +62,8 @@ def compare(
     MEASURED is a table (CSV with commas, semicolons or tabs, a header, # comments): x, y, z in mm; u, v where
     marks were drawn on the flat fabric; shear in degrees; fibre directions warp_x, warp_y, warp_z and weft_x ...;
     sigma_xyz, sigma_shear, sigma_direction and replicate, where known. Without u, v a point is held
-    against the nearest point of the drape, and its position only along the normal.
+    against the nearest point of the drape, and its position only along the normal. The drape lies on the smooth tool
+    that the facets stand for, as the ply does; --facets is for nodes that another program has put on the facets.
 
     \b
     Examples:
@@ -84,7 +91,7 @@ def compare(
         ready = read_asked(part, measured, **asked)
         announce_compilation(quiet)
         progress.step("Comparing")
-        result = gd.compare(ready.surface, ready.measurement, **ready.laid, effects=effects)
+        result = gd.compare(ready.surface, ready.measurement, **ready.laid, effects=effects, smooth=not facets)
         progress.step("Writing")
         files = write_comparison(result, folder, outputs)
     say(result.warnings, (*ready.notes, *result.notes), quiet)

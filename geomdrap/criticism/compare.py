@@ -9,6 +9,7 @@ import numpy as np
 from geomdrap.criticism.compare_places import places_of
 from geomdrap.criticism.compare_residuals import in_yarns, turns
 from geomdrap.criticism.comparison import Comparison
+from geomdrap.criticism.smooth import SmoothTool, note_on
 from geomdrap.errors import MeasurementError
 from geomdrap.fishnet import drape
 from geomdrap.fishnet.pitch import choose_pitch, coarse_facets
@@ -44,6 +45,7 @@ def compare(
     effects: Sequence[Effect] = (),
     reference: Sequence[float] | None = None,
     project: bool = False,
+    smooth: bool = True,
 ) -> Comparison:
     """Drape a part and compare the net with measured points.
 
@@ -51,12 +53,15 @@ def compare(
     part, and so that drawn marks lie on nodes, where it is None. ``sigma_xyz`` (mm, per coordinate),
     ``sigma_shear`` and ``sigma_direction`` (degrees) are the noise of the measurement where it has no columns for
     it; where they are None too the noise comes from replicates, or from the differences of neighbours, and that of
-    directions, where these do not say it, from that of the shear.
+    directions, where these do not say it, from that of the shear. A real ply lies on the ``smooth`` tool that the
+    facets stand for; nodes of a drape by another tool lie on the facets themselves.
     Raises MeasurementError where the table cannot belong to the part, SurfaceError and DrapeError as `drape` does.
     """
     warnings = require_on_part(surface, measurement)
     pitch, notes = suited_pitch(surface, measurement, pitch)
-    net = drape(surface, origin, angle, pitch, effects=effects, reference=reference, project=project)
+    acting = (*effects, SmoothTool()) if smooth else effects
+    net = drape(surface, origin, angle, pitch, effects=acting, reference=reference, project=project)
+    notes = (*notes, *note_on(surface)) if smooth else notes
     result = compare_net(
         net, measurement, sigma_xyz=sigma_xyz, sigma_shear=sigma_shear, sigma_direction=sigma_direction
     )

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.criticism.evidence import FAMILY, LEAST_SHARE
+from geomdrap.criticism.evidence import FAMILY, FORETELLS, LEAST_SHARE
 from geomdrap.criticism.plateau import Plateau, plateau
 
 if TYPE_CHECKING:
@@ -35,9 +35,15 @@ def shear_stops(experiment: Experiment, model: Fitted, scatter: Scatter) -> Plat
 
 
 def locks(experiment: Experiment, first: Round) -> bool:
-    """Whether the shear stops at an angle, and locking explains a good share of the misfit."""
-    possible = any(e.name == LOCKING and e.p_family < FAMILY and e.share >= LEAST_SHARE for e in first.evidence)
-    return possible and _stop(experiment, first) is not None
+    """Whether the shear stops at an angle, and locking explains a good share of the misfit, or more than all others.
+
+    Yarns that buckled as the ply locked lie where no net foretells, and leave a small share to any of them.
+    """
+    own = next((e for e in first.evidence if e.name == LOCKING), None)
+    if own is None or own.p_family >= FAMILY:
+        return False
+    best = own.cv_ratio < FORETELLS and all(e.gain <= own.gain for e in first.evidence)
+    return (own.share >= LEAST_SHARE or best) and _stop(experiment, first) is not None
 
 
 def _stop(experiment: Experiment, first: Round) -> Plateau | None:

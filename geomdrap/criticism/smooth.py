@@ -9,11 +9,13 @@ Source: A. Vlachos, J. Peters, C. Boyd and J. L. Mitchell, Curved PN triangles, 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.fishnet import Effect
 from geomdrap.fishnet.relax_surface import smooth_normals
 from geomdrap.surface.quarter import quartered
 
@@ -22,6 +24,18 @@ if TYPE_CHECKING:
 
 MOST_FACETS = 120_000  # after splitting
 LEAST_LIFT = 1e-3  # mm: where no middle moves further, the part is as good as its facets
+
+
+class SmoothTool(Effect):
+    """The net is draped on the smooth tool that the facets stand for, after all that acts on the surface."""
+
+    name = "smooth-tool"
+    stage = "surface"
+    rank = math.inf
+
+    def on_surface(self, surface: Surface) -> Surface:
+        """The surface with its facets split and rounded."""
+        return smoothed(surface)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +72,7 @@ def _split(surface: Surface, splits: list[Split] | None) -> Surface:
         return surface
     numbers = np.repeat(surface.source_face, 4)
     made = Surface(points, split, source=surface.source, face_numbers=numbers, notes=surface.notes)
+    made = made.numbered_by(surface.vertex_of_input)
     # what a surface does to its vertices, as to weld some or to turn facets over, is not done again
     if splits is not None and np.array_equal(made.points, points) and np.array_equal(made.triangles, split):
         splits.append(Split(surface.triangles, edges, side, made))

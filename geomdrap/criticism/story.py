@@ -6,10 +6,22 @@ import math
 
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Tried, Value
 from geomdrap.effects import make
+from geomdrap.measurement.plausible import LOOKS_WRONG
+
+OPEN = 0.2  # confidence: below, the data leave the answer open
 
 
 def verdict_sentence(d: Diagnosis) -> str:
-    """The answer, in one or two sentences."""
+    """The answer, in one or two sentences, with what speaks against it: labels that look wrong, too few data."""
+    answer = _answer(d)
+    if d.confidence < OPEN and d.verdict not in (AMBIGUOUS, UNKNOWN):
+        answer += f" These data leave that open (confidence {100.0 * d.confidence:.1g} %): measure more points."
+    if any(LOOKS_WRONG in warning for warning in d.warnings):
+        return f"The labels of the table look wrong: see the warning. If they are right: {answer}"
+    return answer
+
+
+def _answer(d: Diagnosis) -> str:
     if d.verdict == NONE:
         scatter = (
             f"; lay-up scatter of {d.scatter.size:.2g} mm over {d.scatter.length:.0f} mm accounts for the rest"

@@ -45,8 +45,8 @@ def hints_for(
         hints.append(f"none of the candidates explains all of it: {left.size:.1f} times the noise is left, {places}")
     if LOCKING in candidates and verdict not in (AMBIGUOUS, UNKNOWN) and left.structured:
         hints.append(
-            f"{left.size:.1f} times the noise is left, {places}: a locked ply rests in one of many states of like "
-            "energy, and no model foretells which"
+            f"{left.size:.1f} times the noise is left, {places}: a ply whose yarns buckled as it locked rests in one "
+            "of many states of like energy, and no model foretells which"
         )
     if verdict == UNKNOWN:
         hints.append(
@@ -60,7 +60,7 @@ def hints_for(
             "the table has no u, v: where marks moved cannot be seen, so yarn-extension and other effects that leave "
             "the shear as it is are not visible; draw a grid on the flat fabric to see them"
         )
-    return tuple(hints)
+    return tuple(f"{hint}." for hint in hints)
 
 
 def round_with(rounds: Sequence[Round], names: Sequence[str]) -> Round:

@@ -78,4 +78,5 @@ def _split(surface: Surface, longest: float) -> Surface:
         )
     fine = refine(surface.points, surface.triangles, surface.neighbours, surface.neighbour_edge, longest)
     numbers = surface.source_face[fine.parent]
-    return Surface(fine.points, fine.triangles, source=surface.source, face_numbers=numbers, notes=surface.notes)
+    split = Surface(fine.points, fine.triangles, source=surface.source, face_numbers=numbers, notes=surface.notes)
+    return split.numbered_by(surface.vertex_of_input)

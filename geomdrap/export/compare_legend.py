@@ -58,7 +58,9 @@ def draw_dot_bar(
 
     _, name, unit = signed_values(comparison)
     turn = " (counter-clockwise)" if "direction" in name else ""
-    title = f"{name}{turn}, {unit.strip()}" + ("      ×: stands out, set apart" if comparison.outliers else "")
+    marks = ["×: stands out, set apart"] if comparison.outliers else []
+    marks += ["○: no prediction"] if not comparison.used.all() else []
+    title = f"{name}{turn}, {unit.strip()}" + "".join(f"      {mark}" for mark in marks)
     _bar(figure, box, (-scale.signed, scale.signed), colormaps[SIGNED_COLOURS], title)
 
 

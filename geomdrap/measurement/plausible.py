@@ -25,6 +25,9 @@ BETTER = 0.25
 
 FACTORS = {"m": 1000.0, "in": 25.4, "cm": 10.0}
 
+LOOKS_WRONG = "it looks as if"
+"""Words of the warning of labels that are probably others than they say."""
+
 OTHER_LABELS = (
     ("u and v are swapped", (0, 1, 1, 0)),
     ("u runs the other way (mirrored)", (-1, 0, 0, 1)),
@@ -98,7 +101,7 @@ def check_labels(net: Net, measurement: Measurement) -> tuple[str, ...]:
     if not words:
         return ()
     return (
-        f"{measurement.source}: it looks as if {words}: half of the points would then lie within {best:.3g} mm of "
+        f"{measurement.source}: {LOOKS_WRONG} {words}: half of the points would then lie within {best:.3g} mm of "
         f"the prediction, instead of {present:.3g} mm",
     )
 

@@ -235,6 +235,12 @@ class Surface:
         mesh = replace(self._mesh, vertex_of_input=np.arange(len(self.points)))
         return Surface._of(mesh, self.source, self.notes, self.findings)
 
+    def numbered_by(self, vertex_of_input: Ints) -> Surface:
+        """The same part, with the vertex numbers of the input of another (k,), whose vertices come first in this."""
+        own = self._mesh.vertex_of_input
+        numbers = np.where(vertex_of_input >= 0, own[vertex_of_input], -1)
+        return Surface._of(replace(self._mesh, vertex_of_input=numbers), self.source, self.notes, self.findings)
+
     def moved(self, points: Floats) -> Surface:
         """The same triangles with their vertices at other points (n, 3) mm; findings are those of this surface."""
         mesh = replace(self._mesh, points=np.array(points, dtype=np.float64, order="C"))

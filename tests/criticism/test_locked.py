@@ -5,14 +5,47 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from geomdrap.criticism.evidence import Evidence
 from geomdrap.criticism.experiment import Experiment, Layup
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.likelihood import NO_SCATTER
-from geomdrap.criticism.locked import doubted
+from geomdrap.criticism.locked import doubted, locks
 from geomdrap.criticism.model import Fitted, Model
 
 PREDICTED = np.linspace(5.0, 35.0, 60)  # by the net without effects, degrees
 NOISE, STOP, FOUND, OVER = 0.3, 20.0, 22.5, 0.4
+
+
+def first_round(measured, share, cv_ratio=0.7, rival=10.0):
+    """What a search sees of measured shear: an experiment and its first round."""
+    experiment = Experiment(
+        surface=None,
+        measurement=None,
+        layup=Layup("centroid", 0.0),
+        at=np.zeros((60, 2)),
+        frames=np.tile(np.eye(3), (60, 1, 1)),
+        channels=("shear",),
+        mask=np.ones((60, 1), bool),
+        noise=np.full(60, NOISE),
+        measured=measured,
+        pitches=(4.0, 8.0),
+    )
+    base = Fitted(Model(()), Fit(np.zeros(3), measured - PREDICTED, np.zeros((60, 3)), 0.0))
+    evidence = (
+        Evidence("locking", 50.0, 3, 1e-9, 1e-8, share, cv_ratio, True),
+        Evidence("steering", rival, 2, 0.5, 1.0, 0.01, 1.0, False),
+    )
+    return experiment, SimpleNamespace(base=base, scatter=(NO_SCATTER,), evidence=evidence)
+
+
+def test_shear_that_stops_is_locking_where_that_explains_most_or_more_than_all_else():
+    stopped, grown = noisy(np.minimum(PREDICTED, STOP)), noisy(0.9 * PREDICTED)
+    assert locks(*first_round(stopped, 0.5))
+    assert not locks(*first_round(grown, 0.5))  # it does not stop
+    assert locks(*first_round(stopped, 0.05))  # as buckled yarns leave it
+    assert not locks(*first_round(stopped, 0.05, rival=60.0))
+    assert not locks(*first_round(stopped, 0.05, cv_ratio=1.0))
+    assert not locks(*first_round(grown, 0.05))
 
 
 def doubt_of_the_angle(measured, monkeypatch, pitch_doubt=None):

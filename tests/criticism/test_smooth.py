@@ -108,3 +108,18 @@ def test_what_a_surface_welds_is_welded_each_time():
     smoothed(cut, splits)
     moved = cut.moved(cut.points * 1.1)
     np.testing.assert_array_equal(smoothed(moved, splits).points, smoothed(moved).points)
+
+
+@pytest.mark.parametrize("effects", [(), ("bridging",)], ids=["smoothed", "split for bridging"])
+def test_a_vertex_of_the_input_is_the_same_one_on_the_smooth_tool(effects):
+    part = cap(n=16).flipped()  # a bowl, whose facets are too large for a ball of 55 mm and less
+    doubled = np.vstack([part.points[::-1], part.points])  # numbers of the input are not those of the vertices
+    n = len(part.points)
+    bowl = gd.Surface(doubled, part.triangles + n)
+    meant = bowl.points[bowl.vertex_of_input[n + 100]]
+    layup = Layup(f"vertex:{n + 100}", 0.0)
+    net = gd.drape(bowl, "centroid", 0.0, 4.0)
+    marks = gd.Measurement("made", net.points[::4, ::4][np.isfinite(net.points[::4, ::4, 0])])
+    experiment = prepare(bowl, marks, layup, sigma_xyz=0.1)[0]
+    acting = [gd.effects.make(name, radius=5.0) for name in effects]
+    assert np.linalg.norm(experiment.draped(acting, 4.0).origin - meant) < 0.5

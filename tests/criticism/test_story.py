@@ -26,7 +26,15 @@ def tried(name, *amounts, sigma=0.01, selected=False, looked_at_only=False):
 
 
 def diagnosis(verdict, *rows):
-    return SimpleNamespace(verdict=verdict, tried=rows, candidates=(), scatter=Scatter(0.0, 0.0), placement=())
+    return SimpleNamespace(
+        verdict=verdict,
+        tried=rows,
+        candidates=(),
+        scatter=Scatter(0.0, 0.0),
+        placement=(),
+        confidence=1.0,
+        warnings=(),
+    )
 
 
 def test_thresholds_are_left_out_and_what_acts_downwards_is_seen_below_a_value():
@@ -65,3 +73,13 @@ def test_the_interval_is_said_to_be_that_of_95_percent_wherever_it_stands():
     d.verdict, d.placement = "placement", (Value("du", 3.0, 0.1, "mm"),)
     assert verdict_sentence(d).replace("\u00a0", " ").endswith("du 3 ± 0.2 mm (95 %).")
     assert np.ptp(d.placement[0].interval) == pytest.approx(2 * 1.96 * 0.1)
+
+
+def test_what_speaks_against_the_answer_is_said_with_it():
+    d = diagnosis("none", tried("steering", 0.05, 0.06))
+    assert verdict_sentence(d).startswith("Nothing is missing")
+    assert "open" not in verdict_sentence(d)
+    d.confidence = 0.08
+    assert verdict_sentence(d).endswith("These data leave that open (confidence 8 %): measure more points.")
+    d.warnings = ("t.csv: it looks as if u and v are swapped: half of the points would then lie nearer",)
+    assert verdict_sentence(d).startswith("The labels of the table look wrong: see the warning. If they are right: N")
