@@ -15,6 +15,7 @@ import numpy as np
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
 from geomdrap.criticism.evidence import alike_in_what_they_leave, rivals
 from geomdrap.criticism.experiment import Experiment, Layup
+from geomdrap.criticism.jackknife import widened
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
 from geomdrap.criticism.locked import LOCKING, doubted, locks, shear_stops
@@ -162,6 +163,7 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         left = left_over(experiment, model, scatter)
     if LOCKING in names:
         model = doubted(experiment, rounds[0], model)
+    model = widened(experiment, model, scatter)
     unexplained = left.structured and leaves(rounds[0], model, UNEXPLAINED) and names != [LOCKING]
     if unexplained and len(alike) == 1:
         near = alike_in_what_they_leave(rounds[len(names) - 1].evidence)

@@ -43,18 +43,18 @@ def locks(experiment: Experiment, first: Round) -> bool:
     if own is None or own.p_family >= FAMILY:
         return False
     best = own.cv_ratio < FORETELLS and all(e.gain <= own.gain for e in first.evidence)
-    return (own.share >= LEAST_SHARE or best) and _stop(experiment, first) is not None
+    return (own.share >= LEAST_SHARE or best) and first_stop(experiment, first) is not None
 
 
-def _stop(experiment: Experiment, first: Round) -> Plateau | None:
-    """Where the shear stops against what the net without effects foretells."""
+def first_stop(experiment: Experiment, first: Round) -> Plateau | None:
+    """Where the measured shear stops against what the net without effects foretells."""
     return shear_stops(experiment, first.base, min(first.scatter, key=lambda s: s.size))
 
 
 def doubted(experiment: Experiment, first: Round, model: Fitted) -> Fitted:
     """The model with the doubt of its locking angle, degrees, beside what the pitch adds."""
     k = next(k for k, (name, _) in enumerate(model.model.parameters) if name == LOCKING)
-    angle, stop = float(model.values[k]), _stop(experiment, first)
+    angle, stop = float(model.values[k]), first_stop(experiment, first)
     net = experiment.draped(model.model.built(model.values), experiment.pitches[1])
     beyond = np.abs(net.cell_shear) - angle
     beyond = beyond[beyond > 0.0]

@@ -10,7 +10,7 @@ import numpy as np
 from geomdrap.criticism.diagnosis import AMBIGUOUS, UNKNOWN
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.leftover import Leftover
-from geomdrap.criticism.locked import LOCKING
+from geomdrap.criticism.locked import LOCKING, first_stop
 from geomdrap.criticism.model import Fitted
 
 if TYPE_CHECKING:
@@ -43,6 +43,12 @@ def hints_for(
     places = ", ".join(SEEN[c] for c in left.channels) or "everywhere a little"
     if verdict == AMBIGUOUS and left.structured:
         hints.append(f"none of the candidates explains all of it: {left.size:.1f} times the noise is left, {places}")
+    stop = first_stop(experiment, rounds[0]) if LOCKING in candidates else None
+    if stop is not None:
+        hints.append(
+            f"the measured shear stops at {stop.angle:.1f}°, where the net without effects shears up to "
+            f"{experiment.top_shear:.0f}°"
+        )
     if LOCKING in candidates and verdict not in (AMBIGUOUS, UNKNOWN) and left.structured:
         hints.append(
             f"{left.size:.1f} times the noise is left, {places}: a ply whose yarns buckled as it locked rests in one "
