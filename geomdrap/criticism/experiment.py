@@ -80,7 +80,7 @@ class Experiment:
     coarseness: dict[str, np.ndarray] = field(default_factory=dict)
     costly: dict[str, Net] = field(default_factory=dict)
     splits: list[Split] = field(default_factory=list)
-    last: dict[str, Net] = field(default_factory=dict)
+    last: dict[str, tuple[Sequence[Effect], Net | None]] = field(default_factory=dict)
     on_facets: bool = False
 
     def predict(self, effects: Sequence[Effect] = ()) -> np.ndarray:
@@ -119,12 +119,12 @@ class Experiment:
 
         Over a longer way it might be held back in another balance than the one that a drape finds.
         """
-        names = f"{pitch!r} {'+'.join(e.name for e in in_order(effects))}"
-        last = self.last.get(names)
-        near = last is not None and _alike(last.effects, in_order(effects))
-        net = self._draped(effects, pitch, last if near else None)
+        acting = in_order(effects)
+        names = f"{pitch!r} {'+'.join(e.name for e in acting)}"
+        before, last = self.last.get(names, (acting, None))
+        net = self._draped(effects, pitch, last if _alike(before, acting) else None)
         if not net.warnings:
-            self.last[names] = net
+            self.last[names] = acting, net
         return net
 
     def _draped(self, effects: Sequence[Effect], pitch: float, near: Net | None = None) -> Net:

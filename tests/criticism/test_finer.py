@@ -10,12 +10,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import geomdrap as gd
 from geomdrap.criticism.evidence import Evidence
 from geomdrap.criticism.experiment import Experiment, Layup
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.likelihood import NO_SCATTER
 from geomdrap.criticism.model import Fitted, Model, doubted_for_facets, refined
+from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round
+from geomdrap.surface import shapes
 
 diagnose = import_module("geomdrap.criticism.diagnose")  # the package's own name for it is the function
 POINTS = 12
@@ -144,3 +147,23 @@ class Smooth:
 def test_facets_leave_in_doubt_what_rounding_them_has_not_mended():
     got = doubted_for_facets(Smooth(), lambda a: a, found_at(4.0))
     np.testing.assert_allclose(got.doubt, np.abs(PER_PITCH))
+
+
+def test_a_net_is_relaxed_from_the_last_one_whatever_else_acts():
+    part = shapes.sphere_cap(80.0, 50.0, 6.0)
+    net = gd.drape(part, "centroid", 20.0, 8.0)
+    known = np.isfinite(net.points[..., 0])
+    u, v = (a[known] for a in np.meshgrid(net.u, net.v, indexing="ij"))
+    marks = gd.Measurement("made", net.points[known], u=u, v=v)
+
+    def prepared():
+        return prepare(part, marks, Layup("centroid", 20.0, pitch=8.0), sigma_xyz=0.2)[0]
+
+    def acting(offset, ratio):
+        return [gd.effects.make("thickness", offset=offset), gd.effects.make("shear-stiffness", ratio=ratio)]
+
+    warm = prepared()
+    for effects in (acting(0.5, 0.003), acting(0.0, 0.003), acting(0.6, 0.0032)):
+        got = warm.predict(effects)
+        np.testing.assert_allclose(got, prepared().predict(effects), atol=1e-3)
+    assert len(warm.last) == 2  # with thickness and without
