@@ -16,9 +16,9 @@ PREDICTED = np.linspace(5.0, 35.0, 60)  # by the net without effects, degrees
 NOISE, STOP, FOUND, OVER = 0.3, 20.0, 22.5, 0.4
 
 
-def first_round(measured, share, cv_ratio=0.7, rival=10.0):
-    """What a search sees of measured shear: an experiment and its first round."""
-    experiment = Experiment(
+def of_shear(measured):
+    """An experiment that measured shear alone, without a part."""
+    return Experiment(
         surface=None,
         measurement=None,
         layup=Layup("centroid", 0.0),
@@ -30,6 +30,11 @@ def first_round(measured, share, cv_ratio=0.7, rival=10.0):
         measured=measured,
         pitches=(4.0, 8.0),
     )
+
+
+def first_round(measured, share, cv_ratio=0.7, rival=10.0):
+    """What a search sees of measured shear: an experiment and its first round."""
+    experiment = of_shear(measured)
     base = Fitted(Model(()), Fit(np.zeros(3), measured - PREDICTED, np.zeros((60, 3)), 0.0))
     evidence = (
         Evidence("locking", 50.0, 3, 1e-9, 1e-8, share, cv_ratio, True),
@@ -49,18 +54,7 @@ def test_shear_that_stops_is_locking_where_that_explains_most_or_more_than_all_e
 
 
 def doubt_of_the_angle(measured, monkeypatch, pitch_doubt=None):
-    experiment = Experiment(
-        surface=None,
-        measurement=None,
-        layup=Layup("centroid", 0.0),
-        at=np.zeros((60, 2)),
-        frames=np.tile(np.eye(3), (60, 1, 1)),
-        channels=("shear",),
-        mask=np.ones((60, 1), bool),
-        noise=np.full(60, NOISE),
-        measured=measured,
-        pitches=(4.0, 8.0),
-    )
+    experiment = of_shear(measured)
     # of the net that was fitted, some cells are sheared beyond its angle, others are not
     shear = np.array([[FOUND + OVER, -FOUND - OVER], [10.0, np.nan]])
     monkeypatch.setattr(Experiment, "draped", lambda *_: SimpleNamespace(cell_shear=shear))
