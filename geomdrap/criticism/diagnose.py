@@ -79,9 +79,12 @@ def diagnose(
     """
     progress(0.0, "matching")
     layup = Layup(origin, angle, reference, pitch, project)
-    names = [name for name in (available() if effects is None else effects) if name != "placement"]
+    asked = [name for name in (available() if effects is None else effects) if name != "placement"]
+    names = [name for name in asked if make(name).parameters]
+    bare = [f"{name} has no parameters to fit, and was not tried" for name in asked if name not in names]
     with one_blas_thread():
         experiment, notes = prepare(surface, measurement, layup, sigma_xyz, sigma_shear, sigma_direction)
+        notes = (*notes, *bare)
         rounds = search(experiment, names, progress)
         return conclude(experiment, rounds, notes)
 
@@ -199,11 +202,12 @@ def _final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Exp
     if any(make(name).costly for name in model.model.effects):
         finer = experiment.finer()
         better = refined(finer, whiten, model, experiment.pitches[1] / finer.pitches[1])
-        return (finer, better) if better.fit.chi2 <= ELSEWHERE * model.fit.chi2 else (experiment, model)
+        before = float((whiten(np.nan_to_num(model.fit.residual)) ** 2).sum())
+        kept, model = (finer, better) if better.fit.chi2 <= ELSEWHERE * before else (experiment, model)
+        return kept, doubted_for_facets(experiment, model)
     if scatter.size > 0.0 and whole:
         model = refit(experiment, whiten, model)
-    model = with_fresh_slopes(experiment, model)
-    return experiment, doubted_for_facets(experiment, whiten, model) if whole else model
+    return experiment, doubted_for_facets(experiment, with_fresh_slopes(experiment, model))
 
 
 def _coarser(meant: Experiment, final: Experiment, model: Fitted) -> tuple[str, ...]:

@@ -13,6 +13,7 @@ from geomdrap.criticism.kept import kept
 from geomdrap.criticism.smooth import Split, smoothed
 from geomdrap.fishnet import Effect, Net, drape
 from geomdrap.fishnet.effect import in_order, surface_with
+from geomdrap.fishnet.relax_net import UNREST
 
 if TYPE_CHECKING:
     from geomdrap.fishnet.seed import Origin
@@ -122,8 +123,11 @@ class Experiment:
         acting = in_order(effects)
         names = f"{pitch!r} {'+'.join(e.name for e in acting)}"
         before, last = self.last.get(names, (acting, None))
-        net = self._draped(effects, pitch, last if _alike(before, acting) else None)
-        if not net.warnings:
+        near = last if _alike(before, acting) else None
+        net = self._draped(effects, pitch, near)
+        if near is not None and _unrest(net):
+            net = self._draped(effects, pitch)
+        if not _unrest(net):
             self.last[names] = acting, net
         return net
 
@@ -161,7 +165,8 @@ class Experiment:
 
     def unsmoothed(self) -> Experiment:
         """The same experiment with nets on the facets themselves, not on the smooth tool that they stand for."""
-        kept: dict[str, dict[str, object]] = {name: {} for name in ("surfaces", "coarseness", "costly", "last")}
+        names = ("surfaces", "coarseness", "costly", "last", "refused")
+        kept: dict[str, dict[str, object]] = {name: {} for name in names}
         return replace(self, on_facets=True, **kept)  # type: ignore[arg-type]
 
     def noise_by_kind(self) -> tuple[float | None, float | None, float | None]:
@@ -181,6 +186,11 @@ class Experiment:
     def point_of(self) -> np.ndarray:
         """Number of the point of each value (m,)."""
         return np.nonzero(self.mask.T)[1]
+
+
+def _unrest(net: Net) -> bool:
+    """Whether a net has not come to rest."""
+    return any(UNREST in warning for warning in net.warnings)
 
 
 def _alike(some: Sequence[Effect], others: Sequence[Effect]) -> bool:

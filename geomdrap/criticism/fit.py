@@ -54,9 +54,10 @@ def fit(
     residual = measured - predict(values)
     lost = np.isnan(residual)
     filled = np.where(lost, 0.0, residual)
-    jacobian = (
-        take_slopes(predict, values, measured - residual, steps, low, high) if slopes is None else slopes.copy()
-    )
+    jacobian = np.zeros((len(residual), len(values))) if slopes is None else slopes.copy()
+    free = np.flatnonzero(high > low)  # the others keep the slopes that they have
+    if slopes is None:
+        jacobian[:, free] = take_slopes(predict, values, measured - residual, steps, low, high, free)[:, free]
     chi2 = _square(whiten(filled))
     damping = 0.0
     fresh = slopes is None
@@ -83,7 +84,7 @@ def fit(
             if gain < SMALL:
                 break
         elif not fresh:  # the slopes are worn: take them anew, once for each place
-            jacobian = take_slopes(predict, values, measured - filled, steps, low, high)
+            jacobian[:, free] = take_slopes(predict, values, measured - filled, steps, low, high, free)[:, free]
             fresh = True
         elif foreseen < RAGGED:
             break
@@ -110,7 +111,10 @@ def take_slopes(
     out = np.zeros((len(there), len(at)))
     for k in range(len(at)) if only is None else only:
         step = np.zeros(len(at))
-        step[k] = steps[k] if at[k] + steps[k] <= high[k] else -steps[k]
+        up, down = min(steps[k], high[k] - at[k]), min(steps[k], at[k] - low[k])
+        step[k] = up if up >= min(steps[k], down) else -down
+        if step[k] == 0.0:
+            continue
         out[:, k] = np.nan_to_num((predict(at + step) - there) / step[k])
     return out
 

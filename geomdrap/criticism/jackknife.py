@@ -14,9 +14,11 @@ import numpy as np
 
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.holdout import blocks_of
-from geomdrap.criticism.likelihood import Scatter, deviations
+from geomdrap.criticism.likelihood import Scatter, covariance, deviations
 from geomdrap.criticism.model import Fitted
 from geomdrap.criticism.search import judge_of
+
+MOST = 2.0  # times larger
 
 
 def widened(experiment: Experiment, model: Fitted, scatter: Scatter) -> Fitted:
@@ -29,17 +31,22 @@ def widened(experiment: Experiment, model: Fitted, scatter: Scatter) -> Fitted:
 
 
 def jackknifed(experiment: Experiment, model: Fitted, scatter: Scatter) -> np.ndarray:
-    """Standard deviations (p,) of the values by leaving out block after block, to first order."""
+    """Standard deviations (p,) of the values by leaving out block after block, each by one step of the whole fit.
+
+    A fit leaves less than the noise of a block that has a say in it: steps are made larger by as much as that makes
+    them too small where the covariance is right, at most by ``MOST``. 0 for values of which nothing is seen.
+    """
     rows = np.isfinite(model.fit.residual)
-    block = blocks_of(experiment.at)[experiment.point_of()]
-    steps = []
-    for k in np.unique(block[rows]):
-        left = rows & (block != k)
-        whiten = judge_of(experiment, left).whiten(scatter)
-        slopes = whiten(model.fit.slopes[left])
-        size = np.linalg.norm(slopes, axis=0)
-        scale = np.where(size > 0.0, size, 1.0)
-        step = np.linalg.lstsq(slopes / scale, whiten(model.fit.residual[left]), rcond=1e-6)[0]
-        steps.append(step / scale)
-    n, moves = len(steps), np.array(steps)
-    return np.asarray(np.sqrt((n - 1) / n * ((moves - moves.mean(axis=0)) ** 2).sum(axis=0)))
+    whiten = judge_of(experiment, rows).whiten(scatter)
+    block = blocks_of(experiment.at)[experiment.point_of()][rows]
+    slopes, residual = whiten(model.fit.slopes[rows]), whiten(model.fit.residual[rows])
+    spread = covariance(slopes)
+    spread[~np.isfinite(spread)] = 0.0
+    squares, expected = np.zeros(len(spread)), np.zeros(len(spread))
+    for k in np.unique(block):
+        own = slopes[block == k]
+        said = own.T @ own
+        squares += (spread @ (own.T @ residual[block == k])) ** 2
+        expected += np.diag(spread @ (said - said @ spread @ said) @ spread)
+    meant = np.diag(spread)
+    return np.asarray(np.sqrt(squares * np.minimum(meant / np.maximum(expected, 1e-300), MOST**2)))

@@ -11,6 +11,7 @@ import numpy as np
 
 from geomdrap.criticism.fit import STEPS, Fit, fit, take_slopes
 from geomdrap.criticism.likelihood import square_beside
+from geomdrap.criticism.smooth import note_on
 from geomdrap.criticism.start import LEAST_GAIN, Glance, glance, start_values
 from geomdrap.effects import make
 from geomdrap.errors import GeomdrapError
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 Whiten = Callable[[np.ndarray], np.ndarray]
 
 STEP = 0.1  # of a parameter's typical size: the differences with which slopes are taken
+MOSTLY = 0.9  # of the values: a net that predicts fewer is not compared with another
 PLACED = 3  # parameters of the placement, before all others
 REFINEMENTS = 5  # steps on a finer net
 FEW_STEPS, MORE_STEPS = 7, 18  # of a fit whose every drape is costly, and if it is the best so far
@@ -258,14 +260,18 @@ def with_fresh_slopes(experiment: Experiment, old: Fitted) -> Fitted:
     return replace(old, fit=replace(old.fit, slopes=slopes))
 
 
-def doubted_for_facets(experiment: Experiment, whiten: Whiten, model: Fitted) -> Fitted:
-    """The model with what the facets of the part leave in doubt of its values.
+def doubted_for_facets(experiment: Experiment, model: Fitted) -> Fitted:
+    """The model with what the facets of the part leave in doubt of its values, beside other doubts that it has.
 
     Chords are of second order: what is left after every facet was split in four and rounded is a third of what that
-    changed.
+    changed. Nothing is known of it where facets are not rounded, or a net on them does not predict what was measured.
     """
     smooth, rough = (predictor(e, model.model)(model.values) for e in (experiment, experiment.unsmoothed()))
-    slopes = whiten(model.fit.slopes)
+    known = np.isfinite(smooth - rough)
+    if note_on(experiment.surface) or known.mean() < MOSTLY:
+        return model
+    slopes = (model.fit.slopes / experiment.noise[:, None])[known]
     norm = np.linalg.norm(slopes, axis=0) + 1e-300
-    step = np.linalg.lstsq(slopes / norm, whiten(np.nan_to_num(smooth - rough)), rcond=1e-9)[0] / norm
-    return replace(model, doubt=np.abs(step) / 3.0)
+    change = ((smooth - rough) / experiment.noise)[known]
+    doubt = np.abs(np.linalg.lstsq(slopes / norm, change, rcond=1e-9)[0] / norm) / 3.0
+    return replace(model, doubt=doubt if model.doubt is None else np.hypot(model.doubt, doubt))

@@ -49,11 +49,11 @@ class Split:
 
 
 def smoothed(surface: Surface, splits: list[Split] | None = None) -> Surface:
-    """The part with its facets split in four and rounded; itself where that makes no difference, or too many.
+    """The part with its facets split in four and rounded; itself where that makes no difference, too many, or is cut.
 
     What is split is added to ``splits``: the same facets with their vertices elsewhere are not split anew.
     """
-    if 4 * len(surface.triangles) > MOST_FACETS:
+    if 4 * len(surface.triangles) > MOST_FACETS or surface.cuts:
         return surface
     known = next((s for s in splits or () if s.triangles is surface.triangles), None)
     if known is not None:
@@ -73,6 +73,8 @@ def _split(surface: Surface, splits: list[Split] | None) -> Surface:
     numbers = np.repeat(surface.source_face, 4)
     made = Surface(points, split, source=surface.source, face_numbers=numbers, notes=surface.notes)
     made = made.numbered_by(surface.vertex_of_input)
+    if surface.findings.unit_hint:
+        made = made.doubted(surface.findings.unit_hint)
     # what a surface does to its vertices, as to weld some or to turn facets over, is not done again
     if splits is not None and np.array_equal(made.points, points) and np.array_equal(made.triangles, split):
         splits.append(Split(surface.triangles, edges, side, made))
@@ -90,7 +92,9 @@ def _rounded(surface: Surface, edges: np.ndarray, side: np.ndarray) -> np.ndarra
 
 
 def note_on(surface: Surface) -> tuple[str, ...]:
-    """A sentence where a part has too many facets to be smoothed, none where not."""
+    """A sentence where a part is cut, or has too many facets to be smoothed; none where not."""
+    if surface.cuts:
+        return ("nets lie on the facets of the part itself: one that is cut is not rounded to the smooth tool",)
     count = len(surface.triangles)
     if 4 * count <= MOST_FACETS:
         return ()

@@ -157,17 +157,20 @@ def _best_start(
 ) -> np.ndarray:
     """The best of the ``starts``, values of the base and of a new effect, after the step that the base's slopes ask.
 
-    The step is left out where it does no good.
+    The step is left out where it does no good. What a start does not predict counts as the base left it.
     """
     shifts = whiten(base.fit.slopes)
+    low, high = base.model.bounds
+    own = slice(None, len(base.values))
 
     def left(values: np.ndarray) -> np.ndarray:
-        return whiten(np.nan_to_num(experiment.measured - predict(values)))
+        residual = experiment.measured - predict(values)
+        return whiten(np.nan_to_num(np.where(np.isnan(residual), base.fit.residual, residual)))
 
-    known = [(left(np.append(values, own)), np.append(values, own)) for values, own in starts]
+    known = [(left(np.append(values, more)), np.append(values, more)) for values, more in starts]
     white, start = min(known, key=lambda one: square_beside(one[0], shifts))
     moved = start.copy()
-    moved[: shifts.shape[1]] += np.linalg.lstsq(shifts, white, rcond=1e-9)[0]
+    moved[own] = np.clip(moved[own] + np.linalg.lstsq(shifts, white, rcond=1e-9)[0], low, high)
     return moved if (left(moved) ** 2).sum() < (white**2).sum() else start
 
 

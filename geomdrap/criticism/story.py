@@ -15,7 +15,7 @@ def verdict_sentence(d: Diagnosis) -> str:
     """The answer, in one or two sentences, with what speaks against it: labels that look wrong, too few data."""
     answer = _answer(d)
     if d.confidence < OPEN and d.verdict not in (AMBIGUOUS, UNKNOWN):
-        answer += f" These data leave that open (confidence {100.0 * d.confidence:.1g} %): measure more points."
+        answer += f" These data leave that open (confidence {100.0 * d.confidence:.0f} %): measure more points."
     if any(LOOKS_WRONG in warning for warning in d.warnings):
         return f"The labels of the table look wrong: see the warning. If they are right: {answer}"
     return answer

@@ -12,6 +12,7 @@ from geomdrap.fishnet.net import cells_of
 from geomdrap.fishnet.relax import GOOD_ENOUGH, relax
 from geomdrap.fishnet.relax_problem import CORNERS, chord_sines, problem_of
 
+UNREST = "has not come to rest"  # of the warning that says so
 ON_RIM = 1e-6  # of the pitch: a node no further beyond the rim is on it
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ def _doubts(net: Net, found: Relaxed) -> tuple[str, ...]:
     if found.unrest <= GOOD_ENOUGH:
         return ()
     return (
-        f"the net of {net.surface.source} has not come to rest (forces out of balance by {found.unrest:.1g}): the "
+        f"the net of {net.surface.source} {UNREST} (forces out of balance by {found.unrest:.1g}): the "
         "part has sharp edges, or the fabric locks; use a finer mesh, another pitch, or a smaller blank and compare",
     )
 

@@ -88,7 +88,7 @@ def stand(surface: Surface, corner_normals: np.ndarray, points: np.ndarray, last
     else:
         mesh = (surface.points, surface.triangles, surface.neighbours, surface.neighbour_edge)
         point, face = nearest_from(*mesh, points, last.face)
-    part = (surface.points, surface.triangles, surface.neighbours, surface.normals, surface.areas)
+    part = (surface.points, surface.triangles, surface.neighbours, surface.normals, surface.areas, surface.on_rim)
     return Footing(point, *footing(*part, corner_normals, points, point, face))
 
 
@@ -99,6 +99,7 @@ def footing(
     neighbours: np.ndarray,
     normals: np.ndarray,
     areas: np.ndarray,
+    rim: np.ndarray,
     corner_normals: np.ndarray,
     goal: np.ndarray,
     point: np.ndarray,
@@ -125,6 +126,7 @@ def footing(
             ax, ay, az = px - vertices[o, 0], py - vertices[o, 1], pz - vertices[o, 2]
             share = 1.0 + hx * ax + hy * ay + hz * az
             on_rim |= neighbours[f, (k + 1) % 3] < 0 and share < ON_EDGE
+            on_rim |= rim[o] and share > 1.0 - ON_EDGE
             cx, cy, cz = corner_normals[f, k, 0], corner_normals[f, k, 1], corner_normals[f, k, 2]
             depth = -0.5 * share * (cx * ax + cy * ay + cz * az)
             lx += depth * cx

@@ -213,6 +213,15 @@ class Surface:
         return {}
 
     @cached_property
+    def on_rim(self) -> np.ndarray:
+        """Whether each vertex (n,) is on the rim."""
+        out = np.zeros(len(self.points), np.bool_)
+        f, k = np.nonzero(self.neighbours < 0)
+        out[self.triangles[f, k]] = True
+        out[self.triangles[f, (k + 1) % 3]] = True
+        return out
+
+    @cached_property
     def _tree(self) -> NearestTree:
         return NearestTree(self.points, self.triangles)
 

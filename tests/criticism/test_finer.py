@@ -67,6 +67,7 @@ def test_locking_in_place_of_another_costly_effect_is_fitted_on_a_net_of_half_th
         return model
 
     monkeypatch.setattr(diagnose, "refined", record)
+    monkeypatch.setattr(diagnose, "doubted_for_facets", lambda _, model: model)
     monkeypatch.setattr(diagnose, "left_over", lambda *_: SimpleNamespace(structured=True))
     monkeypatch.setattr(diagnose, "locks", lambda *_: True)
     with pytest.raises(StopIteration):
@@ -77,9 +78,10 @@ def test_locking_in_place_of_another_costly_effect_is_fitted_on_a_net_of_half_th
 @pytest.mark.parametrize(("worse", "kept"), [(1.2, False), (2.0, True)])
 def test_a_finer_net_that_came_to_rest_elsewhere_tells_nothing_and_that_is_said(monkeypatch, worse, kept):
     meant, old = experiment((1.0, 8.0)), fitted("shear-stiffness")
-    old = replace(old, fit=replace(old.fit, chi2=100.0))
+    old = replace(old, fit=replace(old.fit, residual=np.full(POINTS, np.sqrt(100.0 / POINTS)), chi2=1.0))
     new = replace(old, fit=replace(old.fit, chi2=100.0 * worse))
     monkeypatch.setattr(diagnose, "refined", lambda *_: new)
+    monkeypatch.setattr(diagnose, "doubted_for_facets", lambda _, model: model)
     final, model = diagnose._final(meant, old, NO_SCATTER)
     assert (final is meant, model is old) == (kept, kept)
     said = diagnose._coarser(meant, final, model)
@@ -133,20 +135,30 @@ def test_where_the_finer_net_takes_no_step_no_doubt_is_known(monkeypatch):
 class Smooth:
     """An experiment whose net is 4 PER_PITCH off on facets, and PER_PITCH where these are rounded."""
 
-    def __init__(self, off=1.0):
-        self.off, self.refused = off, {}
+    surface, noise = shapes.plane(10.0, 10.0, 5.0), np.full(POINTS, 0.1)
+
+    def __init__(self, off=1.0, lost=0):
+        self.off, self.refused, self.lost = off, {}, lost
 
     def unsmoothed(self):
-        return Smooth(4.0)
+        return Smooth(4.0, self.lost)
 
     def predict(self, effects):
         values = np.array([v for e in effects for v in e.values.values()])
-        return SLOPES @ (values + self.off * PER_PITCH)
+        there = SLOPES @ (values + self.off * PER_PITCH)
+        there[: self.lost if self.off > 1.0 else 0] = np.nan
+        return there
 
 
 def test_facets_leave_in_doubt_what_rounding_them_has_not_mended():
-    got = doubted_for_facets(Smooth(), lambda a: a, found_at(4.0))
+    got = doubted_for_facets(Smooth(), found_at(4.0))
     np.testing.assert_allclose(got.doubt, np.abs(PER_PITCH))
+    more = doubted_for_facets(Smooth(lost=1), replace(found_at(4.0), doubt=np.full(4, 0.5)))
+    np.testing.assert_allclose(more.doubt, np.hypot(PER_PITCH, 0.5))
+
+
+def test_where_facets_predict_little_nothing_is_known_of_their_doubt():
+    assert doubted_for_facets(Smooth(lost=POINTS // 2), found_at(4.0)).doubt is None
 
 
 def test_a_net_is_relaxed_from_the_last_one_whatever_else_acts():

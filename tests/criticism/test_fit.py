@@ -84,3 +84,30 @@ def test_a_parameter_that_only_rounding_shows_stays_where_it_is():
     got = fit(predict, y, lambda a: a / 0.02, np.array([1.0, 0.5, 40.0]), np.array([0.01, 0.01, 5.0]), *bounds)
     assert got.values[2] == 40.0
     assert got.values[:2] == pytest.approx([3.0, 1.5], abs=0.1)
+
+
+def test_what_is_held_is_not_moved_to_take_slopes_and_keeps_its_own():
+    asked = []
+
+    def predict(values):
+        asked.append(values.copy())
+        return np.array([values[0] ** 3, values[0] * values[1], values[1]])
+
+    start, steps = np.array([2.0, 0.3]), np.array([0.1, 0.2])
+    slopes = np.array([[-5.0, 0.0], [0.3, 2.0], [0.0, 1.0]])  # the first is wrong, and is taken anew
+    found = fit(predict, np.array([1.0, 0.3, 0.3]), lambda a: a, start, steps, np.array([0.0, 0.3]), np.array([9.0, 0.3]), slopes)
+    assert all(values[1] == 0.3 for values in asked)
+    assert found.values[0] == pytest.approx(1.0, abs=0.1)
+    np.testing.assert_allclose(found.slopes[:, 1], slopes[:, 1], atol=1e-12)
+
+
+def test_slopes_are_taken_within_a_range_smaller_than_the_step():
+    asked = []
+
+    def predict(values):
+        asked.append(values[0])
+        return 3.0 * values
+
+    got = take_slopes(predict, np.array([0.4]), np.array([1.2]), np.array([1.0]), np.array([0.0]), np.array([0.5]))
+    assert got[0, 0] == pytest.approx(3.0)
+    assert all(0.0 <= x <= 0.5 for x in asked)

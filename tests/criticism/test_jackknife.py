@@ -56,7 +56,14 @@ def test_an_interval_is_never_narrower_for_it_and_other_doubts_stay():
     assert widened(experiment(), calm, NO_SCATTER).doubt == pytest.approx([0.3, 0.0, 0.0])
 
 
-def test_what_is_not_seen_stays_so():
-    blind = np.column_stack([SLOPES, np.zeros(POINTS)])
-    there = replace(model(RNG.normal(size=POINTS)), fit=Fit(np.zeros(4), RNG.normal(size=POINTS), blind, 0.0))
+@pytest.mark.parametrize("elsewhere", [0.0, 1e-9, 1e-3])
+def test_what_one_block_alone_shows_keeps_a_sane_interval(elsewhere):
+    first = blocks_of(AT) == 0
+    local = np.where(first, 1.0, elsewhere * RNG.normal(size=POINTS))
+    slopes = np.column_stack([SLOPES, local, np.zeros(POINTS)])
+    residual = RNG.normal(size=POINTS)
+    there = Fitted(Model(()), Fit(np.zeros(5), residual, slopes, float(residual @ residual)))
+    found = jackknifed(experiment(), there, NO_SCATTER)
+    assert found[3] < 3.0 * deviations(slopes)[3]
+    assert found[4] == 0.0  # nothing is seen of it, and its own deviation is infinite
     assert np.isfinite(widened(experiment(), there, NO_SCATTER).doubt).all()

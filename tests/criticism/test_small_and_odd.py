@@ -100,3 +100,18 @@ def test_swapped_labels_are_a_warning_of_a_diagnosis_and_no_note(net, swapped):
     experiment, notes = prepare(net.surface, m, Layup("centroid", 20.0), sigma_xyz=0.5)
     assert ["u and v are swapped" in warning for warning in experiment.warnings] == [True] * swapped
     assert not any("swapped" in note for note in notes)
+
+
+def test_an_effect_without_parameters_is_not_tried_and_that_is_said(monkeypatch, net):
+    class Nothing(gd.Effect):
+        name = "nothing"
+        stage = "net"
+
+    monkeypatch.setattr("geomdrap.effects.registry._REGISTERED", {})
+    gd.effects.register(Nothing)
+    known = np.isfinite(net.points[::2, ::2, 0])
+    u, v = (a[::2, ::2][known] for a in np.meshgrid(net.u, net.v, indexing="ij"))
+    m = gd.Measurement("made", net.points[::2, ::2][known], u=u, v=v)
+    d = gd.diagnose(net.surface, m, origin="centroid", angle=20.0, sigma_xyz=0.2, effects=["nothing", "weave-skew"])
+    assert [t.name for t in d.tried] == ["weave-skew"]
+    assert "nothing has no parameters to fit, and was not tried" in d.notes

@@ -102,12 +102,15 @@ def test_the_same_facets_with_their_vertices_elsewhere_are_not_split_anew():
     assert len(splits) == 2
 
 
-def test_what_a_surface_welds_is_welded_each_time():
-    """Beside a cut, vertices lie twice at one place; the copies of one part do not stand for the next."""
-    cut, splits = cap().cut([(-20.0, 0.0, 56.0), (20.0, 0.0, 56.0)]), []
-    smoothed(cut, splits)
-    moved = cut.moved(cut.points * 1.1)
-    np.testing.assert_array_equal(smoothed(moved, splits).points, smoothed(moved).points)
+def test_a_cut_stays_open():
+    """Beside a cut, vertices lie twice at one place; a surface made of them would weld them."""
+    cut = cap().cut([(-20.0, 0.0, 56.0), (20.0, 0.0, 56.0)])
+    assert smoothed(cut) is cut
+    assert "cut" in smooth.note_on(cut)[0]
+
+
+def test_a_hint_on_the_unit_is_kept():
+    assert smoothed(cap().doubted("in inches?")).findings.unit_hint == "in inches?"
 
 
 @pytest.mark.parametrize("effects", [(), ("bridging",)], ids=["smoothed", "split for bridging"])

@@ -79,7 +79,7 @@ def test_what_speaks_against_the_answer_is_said_with_it():
     d = diagnosis("none", tried("steering", 0.05, 0.06))
     assert verdict_sentence(d).startswith("Nothing is missing")
     assert "open" not in verdict_sentence(d)
-    d.confidence = 0.08
-    assert verdict_sentence(d).endswith("These data leave that open (confidence 8 %): measure more points.")
+    for d.confidence, said in ((0.08, "8"), (0.154, "15")):
+        assert verdict_sentence(d).endswith(f"These data leave that open (confidence {said} %): measure more points.")
     d.warnings = ("t.csv: it looks as if u and v are swapped: half of the points would then lie nearer",)
     assert verdict_sentence(d).startswith("The labels of the table look wrong: see the warning. If they are right: N")

@@ -327,3 +327,20 @@ def test_beyond_the_rim_the_surface_goes_on_without_a_step():
     out = goal[:, :2] / radius
     away = (standing.turning[:, :, :2] * out[:, None]).sum(axis=2)
     assert abs(away).max() < 0.2 * abs(standing.turning).max()  # straight on, but along the rim it turns
+
+
+def test_beside_a_vertex_of_the_rim_it_goes_on_whichever_facet_is_asked():
+    """Some of the facets round a vertex of the rim have no side there."""
+    cap = shapes.sphere_cap(RADIUS, 60.0, 6.0)
+    normals = smooth_normals(cap.triangles, cap.normals, cap.corner_angles, len(cap.points))
+    rim = np.flatnonzero(cap.on_rim)
+    assert len(rim) == len(cap.boundary_loops[0])
+    out = cap.points[rim] * [1.0, 1.0, 0.0]
+    goal = cap.points[rim] + 3.0 * out / np.linalg.norm(out, axis=1, keepdims=True)
+    fresh = stand(cap, normals, goal)
+    assert (fresh.outside > 1.0).all()
+    for face in range(6):  # of the facets round each vertex
+        around = [np.flatnonzero((cap.triangles == v).any(axis=1)) for v in rim]
+        last = fresh._replace(face=np.array([f[face % len(f)] for f in around]))
+        again = stand(cap, normals, goal, last)
+        np.testing.assert_allclose(again.lifted, fresh.lifted, atol=1e-6)
