@@ -14,7 +14,7 @@ import numpy as np
 
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
 from geomdrap.criticism.evidence import alike_in_what_they_leave, rivals
-from geomdrap.criticism.experiment import Experiment, Layup
+from geomdrap.criticism.experiment import Experiment, Layup, restless
 from geomdrap.criticism.jackknife import widened
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
@@ -194,13 +194,16 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
 def _final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Experiment, Fitted]:
     """The model fitted to the end, under the scatter that it leaves, and the experiment with the nets for that.
 
-    A finer net that fits much worse came to rest in another place, and tells nothing of the values.
+    A finer net that fits much worse came to rest in another place, and tells nothing of the values; nor does one that
+    does not come to rest.
     """
     rows = np.isfinite(model.fit.residual)
     whole = bool(rows.all())
     whiten = judge_of(experiment, rows).whiten(scatter) if whole else white(experiment)
     if any(make(name).costly for name in model.model.effects):
         finer = experiment.finer()
+        if not rests(finer, model):
+            return experiment, doubted_for_facets(experiment, model)
         better = refined(finer, whiten, model, experiment.pitches[1] / finer.pitches[1])
         before = float((whiten(np.nan_to_num(model.fit.residual)) ** 2).sum())
         kept, model = (finer, better) if better.fit.chi2 <= ELSEWHERE * before else (experiment, model)
@@ -216,8 +219,13 @@ def _coarser(meant: Experiment, final: Experiment, model: Fitted) -> tuple[str, 
         return ()
     return (
         f"the values of {' and '.join(model.model.effects)} are those of a net of {meant.pitches[1]:g} mm: a finer "
-        "one came to rest elsewhere, so their intervals are too narrow",
+        "one came to rest elsewhere or not at all, so their intervals are too narrow",
     )
+
+
+def rests(experiment: Experiment, model: Fitted) -> bool:
+    """Whether the net of a costly model comes to rest."""
+    return not restless(experiment.draped(model.model.built(model.values), experiment.pitches[1]))
 
 
 def _failures(experiment: Experiment, rounds: Sequence[Round]) -> tuple[str, ...]:

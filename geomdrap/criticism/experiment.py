@@ -125,9 +125,9 @@ class Experiment:
         before, last = self.last.get(names, (acting, None))
         near = last if _alike(before, acting) else None
         net = self._draped(effects, pitch, near)
-        if near is not None and _unrest(net):
+        if near is not None and restless(net):
             net = self._draped(effects, pitch)
-        if not _unrest(net):
+        if not restless(net):
             self.last[names] = acting, net
         return net
 
@@ -188,7 +188,7 @@ class Experiment:
         return np.nonzero(self.mask.T)[1]
 
 
-def _unrest(net: Net) -> bool:
+def restless(net: Net) -> bool:
     """Whether a net has not come to rest."""
     return any(UNREST in warning for warning in net.warnings)
 

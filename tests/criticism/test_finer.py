@@ -68,6 +68,7 @@ def test_locking_in_place_of_another_costly_effect_is_fitted_on_a_net_of_half_th
 
     monkeypatch.setattr(diagnose, "refined", record)
     monkeypatch.setattr(diagnose, "doubted_for_facets", lambda _, model: model)
+    monkeypatch.setattr(diagnose, "rests", lambda *_: True)
     monkeypatch.setattr(diagnose, "left_over", lambda *_: SimpleNamespace(structured=True))
     monkeypatch.setattr(diagnose, "locks", lambda *_: True)
     with pytest.raises(StopIteration):
@@ -82,11 +83,22 @@ def test_a_finer_net_that_came_to_rest_elsewhere_tells_nothing_and_that_is_said(
     new = replace(old, fit=replace(old.fit, chi2=100.0 * worse))
     monkeypatch.setattr(diagnose, "refined", lambda *_: new)
     monkeypatch.setattr(diagnose, "doubted_for_facets", lambda _, model: model)
+    monkeypatch.setattr(diagnose, "rests", lambda *_: True)
     final, model = diagnose._final(meant, old, NO_SCATTER)
     assert (final is meant, model is old) == (kept, kept)
     said = diagnose._coarser(meant, final, model)
     assert bool(said) == kept
     assert all("the values of shear-stiffness are those of a net of 8 mm" in one for one in said)
+
+
+def test_a_finer_net_that_does_not_come_to_rest_is_not_fitted(monkeypatch):
+    meant, old = experiment((1.0, 8.0)), fitted("shear-stiffness")
+    monkeypatch.setattr(diagnose, "rests", lambda *_: False)
+    monkeypatch.setattr(diagnose, "refined", None)
+    monkeypatch.setattr(diagnose, "doubted_for_facets", lambda _, model: model)
+    final, model = diagnose._final(meant, old, NO_SCATTER)
+    assert final is meant and model is old
+    assert "not at all" in diagnose._coarser(meant, final, model)[0]
 
 
 SLOPES = np.random.default_rng(1).normal(size=(POINTS, 4))  # of the placement and an offset
