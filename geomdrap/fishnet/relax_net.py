@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.errors import DrapeError
 from geomdrap.fishnet.grid import Status
 from geomdrap.fishnet.net import cells_of
 from geomdrap.fishnet.relax import GOOD_ENOUGH, relax
@@ -33,9 +35,15 @@ def relaxed(net: Net, near: Net | None = None) -> Net:
 def laid_on(net: Net, near: Net) -> np.ndarray:
     """Nodes (nu, nv, 3) mm of a net, moved to where those of a net ``near`` of the same pitch lie.
 
-    Nodes that the other net has not go the way of the nearest that it has.
+    Nodes that the other net has not go the way of the nearest that it has. Raises DrapeError for another pitch.
     """
     from scipy.ndimage import distance_transform_edt
+
+    if not math.isclose(net.pitch, near.pitch):
+        raise DrapeError(
+            f"a net with a pitch of {net.pitch:g} mm cannot be relaxed from one with {near.pitch:g} mm; "
+            "give one of the same pitch, or none"
+        )
 
     other = np.full(net.lattice.shape, np.nan)
     (i, k), (j, m) = (_same(line, there) for line, there in ((net.u, near.u), (net.v, near.v)))

@@ -314,6 +314,13 @@ def test_yarns_that_the_other_net_has_not_go_the_way_of_their_neighbours():
     np.testing.assert_allclose((start - large.lattice)[known].reshape(-1, 3), [[1.0, 0.0, 0.0]] * (known.sum() // 3), atol=1e-9)
 
 
+def test_a_net_of_another_pitch_is_no_start():
+    plane = shapes.plane(120.0, 100.0, 10.0)
+    large, small = (gd.drape(plane, (0.0, 0.0, 0.0), 0.0, pitch) for pitch in (10.0, 5.0))
+    with pytest.raises(gd.DrapeError, match="pitch of 10 mm cannot be relaxed from one with 5 mm"):
+        laid_on(large, small)
+
+
 def test_beyond_the_rim_the_surface_goes_on_without_a_step():
     cap = shapes.sphere_cap(RADIUS, 60.0, 6.0)
     normals = smooth_normals(cap.triangles, cap.normals, cap.corner_angles, len(cap.points))
