@@ -57,9 +57,8 @@ def test_the_hidden_effect_is_named(case):
 
 @pytest.mark.slow
 @pytest.mark.skipif(not CASES, reason="the measurements with a hidden effect are not beside the repository")
-@pytest.mark.parametrize("case", [c for c in CASES if "locking" not in c])
+@pytest.mark.parametrize("case", CASES)
 def test_after_improvement_the_held_out_error_is_at_the_noise(case):
-    # a locked net rests in one of many states of like energy, which no model foretells
     result = improved(case)
     assert result.diagnosis.steps[-1].cv_error < 1.15 * result.diagnosis.noise_floor
 
@@ -78,7 +77,7 @@ def test_true_values_lie_within_their_intervals():
                     low, high = value.interval
                     (inside if low <= factor * exact <= high else outside).append(f"{effect.name} {value.name}")
     assert len(inside) >= 12
-    # the ball's radius comes out as 63.1 ± 1.8 mm for 60, for a reason that is not found yet
+    # the ball's radius comes out as 63.1 ± 2.2 mm for 60, for a reason that is not found yet
     assert set(outside) <= {"bridging radius"}
 
 
