@@ -105,9 +105,7 @@ def compare_net(
         None if measured is None else turns(predicted, measured, matched.normal)
         for predicted, measured in ((matched.warp, measurement.warp), (matched.weft, measurement.weft))
     )
-    noises, said = _noises(
-        measurement, matched, away, shear, (warp, weft), (sigma_xyz, sigma_shear, sigma_direction)
-    )
+    noises, said = _noises(measurement, matched, away, shear, (warp, weft), (sigma_xyz, sigma_shear, sigma_direction))
     outliers = find_outliers(net, measurement, matched, noises[0].sigma, noises[1].sigma)
     return Comparison(
         net=net,

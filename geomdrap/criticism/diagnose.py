@@ -29,7 +29,7 @@ from geomdrap.criticism.model import (
     with_fresh_slopes,
 )
 from geomdrap.criticism.prepare import prepare
-from geomdrap.criticism.search import Round, judge_of, try_effects
+from geomdrap.criticism.search import Round, judge_of, steps_of, try_effects
 from geomdrap.criticism.table import tried_of, values_of
 from geomdrap.criticism.threads import one_blas_thread
 from geomdrap.criticism.words import hints_for
@@ -96,7 +96,7 @@ def search(experiment: Experiment, names: Sequence[str], progress: Progress) -> 
     rounds: list[Round] = []
     while True:
         left = [name for name in names if name not in base.model.effects]
-        told = _teller(progress, len(rounds), len(left))
+        told = _teller(progress, len(rounds), steps_of(left))
         rounds.append(try_effects(experiment, base, whiten, left, told))
         best = chosen(rounds)
         if best is None or len(rounds) == MOST_EFFECTS or locks(experiment, rounds[0]):
@@ -160,10 +160,12 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
     alike = rivals(rounds[len(names) - 1].evidence) if names else ()
     # a plateau that the model found does not foretell is no matter of chance: nothing else makes one
     if locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):
-        names, alike = [LOCKING], (LOCKING,)
-        model, scatter = rounds[0].trial(LOCKING)
-        experiment, model = _final(meant, model, scatter)
-        left = left_over(experiment, model, scatter)
+        alike = (LOCKING,)
+        if names != [LOCKING]:
+            names = [LOCKING]
+            model, scatter = rounds[0].trial(LOCKING)
+            experiment, model = _final(meant, model, scatter)
+            left = left_over(experiment, model, scatter)
     if LOCKING in names:
         model = doubted(experiment, rounds[0], model)
     model = widened(experiment, model, scatter)
@@ -204,7 +206,7 @@ def _final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Exp
         finer = experiment.finer()
         if not rests(finer, model):
             return experiment, doubted_for_facets(experiment, model)
-        better = refined(finer, whiten, model, experiment.pitches[1] / finer.pitches[1])
+        better = refined(experiment, finer, whiten, model)
         before = float((whiten(np.nan_to_num(model.fit.residual)) ** 2).sum())
         kept, model = (finer, better) if better.fit.chi2 <= ELSEWHERE * before else (experiment, model)
         return kept, doubted_for_facets(experiment, model)
@@ -274,9 +276,7 @@ def _misplaced(experiment: Experiment, model: Fitted, scatter: Scatter) -> bool:
     )
 
 
-def _steps(
-    experiment: Experiment, rounds: Sequence[Round], names: Sequence[str], final: Fitted
-) -> tuple[Step, ...]:
+def _steps(experiment: Experiment, rounds: Sequence[Round], names: Sequence[str], final: Fitted) -> tuple[Step, ...]:
     from geomdrap.criticism.table import errors_of
 
     plain = unfitted(experiment)

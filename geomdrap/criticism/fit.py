@@ -6,6 +6,7 @@ taken once, by differences, and from then on corrected from each step's own resu
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -14,6 +15,7 @@ import numpy as np
 Predict = Callable[[np.ndarray], np.ndarray]
 
 STEPS = 12  # most accepted or refused steps
+FIRST_STEPS = 3  # after which a fit must have come below a chi-square that is asked of it
 SMALL = 0.05  # of chi-square: a step that promises or gains less ends the fit
 LEAST_STEP = 1e-3  # of a parameter's own step, in every parameter: less ends the fit, too
 RAGGED = 1.0  # of chi-square: where a step along fresh slopes promises no more and fails, facets decide
@@ -43,12 +45,15 @@ def fit(
     high: np.ndarray,
     slopes: np.ndarray | None = None,
     most: int = STEPS,
+    enough: float = math.inf,
+    sloped: Predict | None = None,
 ) -> Fit:
     """Parameters (p,) between ``low`` and ``high`` with the least squares of ``whiten(measured - predict(p))``.
 
     ``predict`` gives (m,) values, NaN where it has none; those count as if they had kept their last residual.
     ``steps`` (p,) are the differences with which slopes are taken, where ``slopes`` (m, p) are not given. At
-    most ``most`` steps are tried.
+    most ``most`` steps are tried; a fit that is above a chi-square of ``enough`` after ``FIRST_STEPS`` is given up.
+    ``sloped`` is what slopes are taken from: a cheaper prediction that changes alike; None for ``predict`` itself.
     """
     values = np.clip(np.asarray(start, dtype=float), low, high)
     residual = measured - predict(values)
@@ -56,12 +61,15 @@ def fit(
     filled = np.where(lost, 0.0, residual)
     jacobian = np.zeros((len(residual), len(values))) if slopes is None else slopes.copy()
     free = np.flatnonzero(high > low)  # the others keep the slopes that they have
+    rough = sloped or predict
     if slopes is None:
-        jacobian[:, free] = take_slopes(predict, values, measured - residual, steps, low, high, free)[:, free]
+        jacobian[:, free] = take_slopes(rough, values, rough(values), steps, low, high, free)[:, free]
     chi2 = _square(whiten(filled))
     damping = 0.0
     fresh = slopes is None
-    for _ in range(most):
+    for tried in range(most):
+        if tried >= FIRST_STEPS and chi2 > enough:
+            break
         seen = whiten(jacobian)
         # as a locking angle that no shear reaches: its slope is rounding, and would send it to the end of its range
         moves = np.linalg.norm(seen, axis=0) * steps > UNSEEN
@@ -84,7 +92,7 @@ def fit(
             if gain < SMALL:
                 break
         elif not fresh:  # the slopes are worn: take them anew, once for each place
-            jacobian[:, free] = take_slopes(predict, values, measured - filled, steps, low, high, free)[:, free]
+            jacobian[:, free] = take_slopes(rough, values, rough(values), steps, low, high, free)[:, free]
             fresh = True
         elif foreseen < RAGGED:
             break

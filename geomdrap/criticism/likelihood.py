@@ -6,6 +6,7 @@ scatter, as far as scatter can look like that. What is left as evidence for an e
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -183,6 +184,11 @@ class Judge:
 def largest_scatter(length: float) -> float:
     """Largest scatter, mm, with a correlation length; its shear has a standard deviation of √2·size/length."""
     return min(LARGEST, float(np.radians(TURNING)) * length / float(np.sqrt(2.0)))
+
+
+def is_noise(chi2: float, values: int) -> bool:
+    """Whether a chi-square is what noise alone gives to so many values."""
+    return chi2 < values + 3.0 * math.sqrt(2.0 * values)
 
 
 def square_beside(residual: np.ndarray, slopes: np.ndarray) -> float:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.criticism.fit import STEPS, Fit, fit, take_slopes
-from geomdrap.criticism.likelihood import square_beside
+from geomdrap.criticism.likelihood import is_noise, square_beside
 from geomdrap.criticism.smooth import note_on
 from geomdrap.criticism.start import LEAST_GAIN, Glance, glance, start_values
 from geomdrap.effects import make
@@ -28,8 +28,9 @@ PLACED = 3  # parameters of the placement, before all others
 REFINEMENTS = 5  # steps on a finer net
 FEW_STEPS, MORE_STEPS = 7, 18  # of a fit whose every drape is costly, and if it is the best so far
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
+NEARLY = 0.02  # of the misfit: a model that leaves less has explained nearly all of it
 HOPELESS = 0.5  # of the way from the best model back to the base
-FAR = 0.1  # the same, where the best model leaves only noise and a few values were probed
+FAR = 0.1  # the same, where the best model leaves next to nothing and a few values were probed
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,20 @@ class Model:
     def with_effect(self, name: str) -> Model:
         """This model with one effect more."""
         return Model((*self.effects, name))
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """An effect on top of a base, before it is fitted.
+
+    ``predict`` remembers what it has predicted; ``seen`` is what one look showed, None for an effect that takes no
+    time.
+    """
+
+    effect: str
+    model: Model
+    predict: Callable[[np.ndarray], np.ndarray]
+    seen: Glance | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,32 +148,40 @@ def fit_placement(experiment: Experiment, whiten: Whiten) -> Fitted:
     return Fitted(model, fit(predict, experiment.measured, whiten, model.neutral, model.steps, *model.bounds))
 
 
-def add_effect(
-    experiment: Experiment,
-    whiten: Whiten,
-    base: Fitted,
-    effect: str,
-    least: float = -math.inf,
-    likely: Whiten | None = None,
-) -> Fitted:
-    """The base model with one effect more, fitted together with everything in the base.
+def look_at(experiment: Experiment, whiten: Whiten, likely: Whiten, base: Fitted, effect: str) -> Look:
+    """Look at an effect on top of the base, once if its drapes take long.
 
-    ``least`` is the chi-square of the best model known: an effect that takes long and promises to stay far above it
-    is not fitted to the end. ``likely`` whitens with the likeliest scatter of the base: what explains nothing beside
-    that is not fitted either.
+    ``whiten`` divides by the noise; ``likely`` whitens with the likeliest scatter of the base.
     """
     model = base.model.with_effect(effect)
     predict = predictor(experiment, model)
+    return Look(
+        effect, model, predict, glance(experiment, predict, whiten, likely, base, effect) if slow(effect) else None
+    )
+
+
+def slow(effect: str) -> bool:
+    """Whether a drape with an effect takes long."""
     kind = make(effect)
-    slow = kind.costly or kind.stage == "surface"
-    explained = slow and _is_noise(least, len(experiment.measured))
-    seen = None
-    if slow and likely is not None:
-        seen = glance(experiment, predict, whiten, likely, base, effect)
-        # where the misfit is not explained one look is too little
-        if seen.gain < LEAST_GAIN or (explained and _hopeless(whiten, base, seen.after, least, HOPELESS)):
-            return _not_fitted(model, base, seen)
-    start = start_values(experiment, predict, whiten, base, effect, seen)
+    return kind.costly or kind.stage == "surface"
+
+
+def add_effect(experiment: Experiment, whiten: Whiten, base: Fitted, look: Look, least: float = -math.inf) -> Fitted:
+    """The base model with one effect more, fitted together with everything in the base.
+
+    ``least`` is the chi-square of the best model known: an effect that takes long and promises to stay far above it,
+    or to explain nothing beside the likeliest scatter, is not fitted to the end.
+    """
+    model, predict, kind, seen = look.model, look.predict, make(look.effect), look.seen
+    values = len(experiment.measured)
+    explained = seen is not None and is_noise(least, values)
+    # where much of the misfit is not explained one look is too little to give it up
+    nearly = explained or least - values < NEARLY * (base.fit.chi2 - values)
+    if seen is not None and (
+        seen.gain < LEAST_GAIN or (nearly and _hopeless(whiten, base, seen.after, least, HOPELESS))
+    ):
+        return _not_fitted(model, base, seen)
+    start = start_values(experiment, predict, whiten, base, look.effect, seen)
     low, high = model.bounds
     # what the base already has keeps its slopes; the fit mends them where they mislead it
     own = slice(len(base.values), None)
@@ -167,15 +190,18 @@ def add_effect(
     residual = experiment.measured - predict(start)
     residual = np.where(np.isnan(residual), base.fit.residual, residual)
     known = least if kind.costly or explained else -math.inf
-    if not _promises(whiten, base, residual, slopes, known, FAR if explained else HOPELESS):
+    far = FAR if nearly else HOPELESS
+    if not _promises(whiten, base, residual, slopes, known, far):
         chi2 = float((whiten(np.nan_to_num(residual)) ** 2).sum())
         if chi2 < base.fit.chi2:
             return Fitted(model, Fit(start, residual, slopes, chi2))
         neutral = np.append(base.values, [p.neutral for p in kind.parameters])
         return Fitted(model, Fit(neutral, base.fit.residual, slopes, base.fit.chi2))
     most = FEW_STEPS if kind.costly else STEPS
-    found = fit(predict, experiment.measured, whiten, start, model.steps, low, high, slopes, most)
-    if kind.costly and found.chi2 < least and not _is_noise(found.chi2, len(found.residual)):
+    # slopes may mislead a first step or two; what is still far off then stays so
+    enough = least + far * (base.fit.chi2 - least) if seen is not None else math.inf
+    found = fit(predict, experiment.measured, whiten, start, model.steps, low, high, slopes, most, enough)
+    if kind.costly and found.chi2 < least and not is_noise(found.chi2, len(found.residual)):
         # the best so far, and still on its way: heading and stiffness make up for each other along a bent valley
         way = found.values, model.steps, low, high, found.slopes, MORE_STEPS
         found = fit(predict, experiment.measured, whiten, *way)
@@ -190,11 +216,6 @@ def _not_fitted(model: Model, base: Fitted, seen: Glance) -> Fitted:
     slopes = np.column_stack([seen.signature / a if a else np.zeros(len(seen.signature)) for a in away])
     fit = Fit(np.append(base.values, neutral), base.fit.residual, np.hstack([base.fit.slopes, slopes]), base.fit.chi2)
     return Fitted(model, fit, looked_at_only=True)
-
-
-def _is_noise(chi2: float, values: int) -> bool:
-    """Whether a chi-square is what noise alone gives to so many values."""
-    return chi2 < values + 3.0 * math.sqrt(2.0 * values)
 
 
 def _promises(
@@ -226,14 +247,14 @@ def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     return Fitted(model, fitted)
 
 
-def refined(experiment: Experiment, whiten: Whiten, old: Fitted, ratio: float) -> Fitted:
-    """A costly model fitted on from where it was, on the finer net of ``experiment``, with the slopes that it has.
+def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
+    """A costly model fitted on from where it was, on the finer nets of ``finer``, with slopes of the coarser ones.
 
     Nets are of second order in the pitch: of what a pitch ``ratio`` times smaller changed in the values,
     1/(ratio² - 1) is left, a third where it was halved. Where no step was taken, nothing is known of it.
     """
     model, found = old.model, old.fit
-    predict = predictor(experiment, model)
+    fine, coarse = predictor(finer, model), predictor(coarser, model)
     low, high = model.bounds
     # how the heading of the first side turns the net depends on that side's length: the ply is placed anew first
     own = slice(PLACED, None)
@@ -241,8 +262,8 @@ def refined(experiment: Experiment, whiten: Whiten, old: Fitted, ratio: float) -
     held[0][own] = held[1][own] = old.values[own]
     for bounds in (held, (low, high)):
         way = found.values, model.steps, *bounds, found.slopes, REFINEMENTS
-        found = fit(predict, experiment.measured, whiten, *way)
-    moved = np.abs(found.values - old.values)
+        found = fit(fine, finer.measured, whiten, *way, sloped=coarse)
+    ratio, moved = coarser.pitches[1] / finer.pitches[1], np.abs(found.values - old.values)
     return Fitted(model, found, moved / (ratio**2 - 1.0) if ratio > 1.0 and moved.any() else None)
 
 

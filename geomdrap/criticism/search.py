@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ from geomdrap.criticism.evidence import Evidence, among_all, chance
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.holdout import blocks_of, held_out_error
 from geomdrap.criticism.likelihood import Judge, Residuals, Scatter, deviations
-from geomdrap.criticism.model import Fitted, Whiten, add_effect
+from geomdrap.criticism.model import Fitted, Look, Whiten, add_effect, look_at, slow
 from geomdrap.effects import make
 
 CLEAR = 3.0  # standard deviations from nothing
@@ -48,15 +48,14 @@ def try_effects(
     """Fit every effect on top of the base, and weigh what speaks for it. ``done`` is told each name."""
     trials, failed = [], []
     least = base.fit.chi2
-    likely = _likely(experiment, base)
-    for name in sorted(names, key=_effort):
-        done(name)
-        trial = add_effect(experiment, whiten, base, name, least, likely)
+    for look in _looks(experiment, base, whiten, names, done):
+        done(look.effect)
+        trial = add_effect(experiment, whiten, base, look, least)
         least = min(least, trial.fit.chi2)
         if _predicts(trial):
             trials.append(trial)
         else:
-            failed.append(name)
+            failed.append(look.effect)
     models = [base, *trials]
     rows = np.all([np.isfinite(m.fit.residual) for m in models], axis=0)
     judge = judge_of(experiment, rows)
@@ -75,10 +74,26 @@ def try_effects(
     return Round(base, tuple(trials), evidence, tuple(scatter), rows, judge, errors[0], tuple(failed))
 
 
-def _effort(name: str) -> int:
-    """How long an effect takes: the slower ones are tried last, when it is known what they have to match."""
-    kind = make(name)
-    return 2 if kind.stage == "surface" else int(kind.costly)
+def _looks(
+    experiment: Experiment, base: Fitted, whiten: Whiten, names: Sequence[str], done: Callable[[str], None]
+) -> Iterator[Look]:
+    """Effects in the order in which they are tried: slow ones last, when it is known what they have to match.
+
+    Of these the one that a first look favours comes first; it may spare the others their fits.
+    """
+    likely = _likely(experiment, base)
+    slow_ones = [name for name in names if slow(name)]
+    yield from (look_at(experiment, whiten, likely, base, name) for name in names if name not in slow_ones)
+    seen = []
+    for name in slow_ones:
+        done(name)
+        seen.append(look_at(experiment, whiten, likely, base, name))
+    yield from sorted(seen, key=lambda look: look.seen.after if look.seen else 0.0)
+
+
+def steps_of(names: Sequence[str]) -> int:
+    """How often ``try_effects`` tells a name."""
+    return len(names) + sum(slow(name) for name in names)
 
 
 def _likely(experiment: Experiment, base: Fitted) -> Whiten:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.criticism.likelihood import square_beside
+from geomdrap.criticism.likelihood import is_noise, square_beside
 from geomdrap.effects import make
 
 if TYPE_CHECKING:
@@ -141,7 +141,7 @@ def start_values(
     meant = base.values.copy()
     meant[:3] = 0.0
     starts = [(base.values, best), (meant, best)]  # a base without the effect may have gone far astray for it
-    if make(effect).acts_at_once:
+    if make(effect).acts_at_once and not is_noise(base.fit.chi2, len(residual)):
         # such a net turns as a whole about its seed, and the heading of its first side holds it but softly
         typical = np.array([q.typical for q in own])
         starts += [(np.array([0.0, 0.0, turn, *meant[3:]]), typical) for turn in TURNS]

@@ -60,7 +60,7 @@ def test_locking_in_place_of_another_costly_effect_is_fitted_on_a_net_of_half_th
     of = Round(base, trials, evidence, (NO_SCATTER,) * 3, np.ones(POINTS, bool), None, 1.0, ())
     asked = []
 
-    def record(finer, whiten, model, ratio):
+    def record(coarser, finer, whiten, model):
         asked.append((model.model.effects, finer.pitches[1]))
         if len(asked) == 2:
             raise StopIteration  # the verdict is no matter here
@@ -109,7 +109,7 @@ class OfSecondOrder:
     """An experiment whose net is off by PER_PITCH·pitch² in every value."""
 
     def __init__(self, pitch):
-        self.pitch, self.measured, self.refused = pitch, SLOPES @ TRUTH, {}
+        self.pitch, self.pitches, self.measured, self.refused = pitch, (pitch, pitch), SLOPES @ TRUTH, {}
 
     def predict(self, effects):
         values = np.array([v for e in effects for v in e.values.values()])
@@ -123,13 +123,13 @@ def found_at(pitch):
 
 @pytest.mark.parametrize(("coarse", "fine"), [(4.0, 2.0), (4.0, 3.0)])
 def test_the_doubt_is_what_the_finer_net_is_still_off(coarse, fine):
-    got = refined(OfSecondOrder(fine), lambda a: a, found_at(coarse), coarse / fine)
+    got = refined(OfSecondOrder(coarse), OfSecondOrder(fine), lambda a: a, found_at(coarse))
     np.testing.assert_allclose(got.values, found_at(fine).values)
     np.testing.assert_allclose(got.doubt, np.abs(got.values - TRUTH))
 
 
 def test_without_a_finer_net_no_doubt_is_known():
-    got = refined(OfSecondOrder(4.0), lambda a: a, found_at(6.0), 1.0)
+    got = refined(OfSecondOrder(4.0), OfSecondOrder(4.0), lambda a: a, found_at(6.0))
     np.testing.assert_allclose(got.values, found_at(4.0).values)
     assert got.doubt is None
 
@@ -139,7 +139,7 @@ def test_where_the_finer_net_takes_no_step_no_doubt_is_known(monkeypatch):
     here = net.predict(old.model.built(old.values))
     answers = chain([here], repeat(np.full(POINTS, np.nan)))
     monkeypatch.setattr(net, "predict", lambda effects: next(answers))
-    got = refined(net, lambda a: a, old, 2.0)
+    got = refined(OfSecondOrder(4.0), net, lambda a: a, old)
     np.testing.assert_array_equal(got.values, old.values)
     assert got.doubt is None
 

@@ -111,3 +111,39 @@ def test_slopes_are_taken_within_a_range_smaller_than_the_step():
     got = take_slopes(predict, np.array([0.4]), np.array([1.2]), np.array([1.0]), np.array([0.0]), np.array([0.5]))
     assert got[0, 0] == pytest.approx(3.0)
     assert all(0.0 <= x <= 0.5 for x in asked)
+
+
+def test_slopes_of_a_cheaper_prediction_lead_to_the_same_values():
+    y = curve(np.array([3.0, 1.5]))
+    dear = []
+
+    def predict(p):
+        dear.append(p)
+        return curve(p)
+
+    def cheap(p):
+        return 1.05 * curve(p) + 0.1
+
+    got = fit(predict, y, lambda a: a / 0.02, np.array([1.0, 0.5]), STEPS, *WIDE, sloped=cheap)
+    np.testing.assert_allclose(got.values, [3.0, 1.5], atol=2e-3)
+    steps_alone = len(dear)
+    fit(predict, y, lambda a: a / 0.02, np.array([1.0, 0.5]), STEPS, *WIDE)
+    assert steps_alone < len(dear) - steps_alone
+
+
+def test_a_fit_that_stays_far_above_what_is_asked_is_given_up():
+    y = curve(np.array([3.0, 1.5]))
+
+    def count(measured, enough):
+        calls = []
+
+        def predict(p):
+            calls.append(p)
+            return curve(p)
+
+        fit(predict, measured, lambda a: a / 0.02, np.array([1.0, 0.5]), STEPS, *WIDE, enough=enough)
+        return len(calls)
+
+    far = y + 10.0  # nothing of the kind fits
+    assert count(far, 1e3) < count(far, np.inf)
+    assert count(y, 1e3) == count(y, np.inf)
