@@ -42,8 +42,8 @@ class Fronts(NamedTuple):
 def rectangles(number: np.ndarray, reach: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Nested rectangles i0, i1, j0, j1 (m, 4) of nodes ``number`` (nu, nv), larger ones first, their cuts and halves.
 
-    Cuts (m, 2) are the axis, -1 for none, and the first of ``reach`` rows or columns; halves (m, 2) are rectangles, -1
-    for empty ones.
+    Cuts (m, 2) are the axis, -1 for none, and the first of ``reach`` rows or columns; halves (m, 2) are rectangles,
+    -1 for empty ones.
     """
     most = 2 * number.size + 1
     box, cut, halves = np.zeros((most, 4), np.int64), np.full((most, 2), -1), np.full((most, 2), -1)

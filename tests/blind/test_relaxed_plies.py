@@ -19,6 +19,7 @@ RECIPES = {
     "stiffness": Recipe(stiffness=0.003),
     "asymmetry": Recipe(stiffness=0.003, asymmetry=0.4),
     "locking": Recipe(lock=12.0),
+    "bending": Recipe(stiffness=0.001, bending=6.0),
     "crossing-slip": Recipe(share=0.3, onset=3.0),
 }
 
