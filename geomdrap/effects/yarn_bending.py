@@ -20,7 +20,7 @@ class YarnBending(Effect):
         "Where the shear changes along a yarn, the yarns across it turn, and their fibres bend within the ply. Stiff "
         "tows spread that over a transition layer as wide as length, the square root of bending stiffness over shear "
         "stiffness; since yarns hardly stretch, the net depends on little else. Yarns are straight at rest. A length "
-        "beyond the radius of a part may straighten them by shearing the ply aslant as a whole; a locking angle given "
+        "beyond the radius of a part may straighten them by shearing the whole ply aslant; a locking angle given "
         "as well stops that. The ratio is that of shear-stiffness where that is given; alone it is 0.001. At 0 the "
         "net is not relaxed at all."
     )

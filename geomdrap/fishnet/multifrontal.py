@@ -144,7 +144,7 @@ def solve(
 ) -> np.ndarray:
     """Solution (2n,) for ``right`` (2n,).
 
-    ``blocks`` (n, 5, 2, 2) of each node with those ``AFTER`` it, or (n, 7, 2, 2) those ``FURTHER``; ``slopes`` (2, 2n)
+    ``blocks`` (n, 5, 2, 2) of each node with those ``AFTER`` it, or (n, 7, 2, 2) ``FURTHER``; ``slopes`` (2, 2n)
     of the unknowns with the tensions of their warp and weft yarns, whose diagonal is -``soft``: with soft = 1/κ the
     matrix is that with κ·slope·slopeᵀ added. With soft = 0 there are no yarns. Not finite where a pivot vanishes.
     """

@@ -1,10 +1,17 @@
-"""Yarns that resist bending: derivatives, an independent minimum, rest from any start, and what bending does."""
+"""Yarns that resist bending: derivatives, rest from any start, finer meshes, and what bending does."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from shared import drape
 
+import geomdrap as gd
 from geomdrap.fishnet.dissection import FURTHER
+from geomdrap.fishnet.relax import relax
 from geomdrap.fishnet.relax_bending import add_bending, bending_energy
+from geomdrap.fishnet.relax_problem import BENT_RATIO, DEFAULT_RATIO, problem_of
+from geomdrap.surface import shapes
 
 RADIUS = 9.0
 BEND = 3.0
@@ -79,3 +86,81 @@ def test_without_turns_of_turns_the_second_derivative_is_positive():
     for _ in range(20):
         way = rng.normal(size=(5, 4, 2))
         assert (way * applied(h, way)).sum() > 0.0
+
+
+CAP = shapes.sphere_cap(80.0, 60.0, 3.0)
+SADDLE = shapes.grid_surface(lambda x, y: (x**2 - y**2) / 300.0, np.linspace(-60, 60, 61), np.linspace(-60, 60, 61))
+TOP, MIDDLE = (6.0, -4.0, 79.7), (6.0, -4.0, 0.07)
+
+
+def posed(surface, seed, pitch=6.0, **fabric):
+    """A geometric net and the problem of relaxing it."""
+    net = gd.drape(surface, seed, 20.0, pitch, project=True)
+    net = replace(net, fabric=replace(net.fabric, **fabric))
+    return net, problem_of(net)
+
+
+@pytest.mark.parametrize("length", [5.0, 20.0, 80.0])
+@pytest.mark.parametrize(("surface", "seed"), [(CAP, TOP), (SADDLE, MIDDLE)], ids=["cap", "saddle"])
+def test_the_net_is_the_same_from_any_start(surface, seed, length):
+    net, problem = posed(surface, seed, bending_length=length)
+    one = relax(problem, net.lattice)
+    noise = 0.03 * net.pitch * np.random.default_rng(1).normal(size=net.lattice.shape)
+    other = relax(problem, net.lattice + noise)
+    assert max(one.unrest, other.unrest) < 1e-6
+    moves = problem.number >= 0
+    assert abs(one.x - problem.x0)[moves].max() > 0.3
+    assert abs(one.x - other.x)[moves].max() < 2e-3
+    assert one.energy == pytest.approx(other.energy, rel=1e-7)
+
+
+def test_flat_fabric_on_a_plane_stays_as_it_is():
+    plain = drape(shapes.plane(120.0, 100.0, 10.0), angle=30.0)
+    net = drape(shapes.plane(120.0, 100.0, 10.0), "yarn-bending:length=60", angle=30.0)
+    here = np.isfinite(net.points)
+    np.testing.assert_allclose(net.points[here], plain.points[here], atol=1e-6)
+    assert not net.warnings
+
+
+def test_a_finer_mesh_and_a_finer_net_give_the_same_places():
+    def places(edge, pitch):
+        surface = shapes.sphere_cap(80.0, 60.0, edge)
+        net = drape(surface, "yarn-bending:length=40", origin=TOP, angle=20.0, pitch=pitch, reach=(48.0, 48.0))
+        every = np.ix_(*(np.argmin(abs(line - np.arange(-48, 49, 8)[:, None]), axis=1) for line in (net.u, net.v)))
+        return net.points[every]
+
+    coarse, fine = places(1.5, 8.0), places(1.5, 4.0)
+    assert np.nanmax(np.linalg.norm(coarse - fine, axis=2)) < 0.5
+    assert np.nanmax(np.linalg.norm(places(3.0, 4.0) - fine, axis=2)) < 0.15
+
+
+def test_the_stiffer_the_yarns_the_less_they_bend():
+    bends = []
+    for length in (0.01, 30.0, 80.0):
+        net, problem = posed(SADDLE, MIDDLE, bending_length=length)
+        found = relax(problem, net.lattice)
+        normal = problem.on_net(found.footing.normal)
+        bends.append(bending_energy(found.x, normal, problem.rest_u, problem.rest_v, 1.0))
+    assert bends[1] < 0.95 * bends[0]
+    assert bends[2] < 0.95 * bends[1]
+
+
+def test_a_length_of_nothing_leaves_the_net_to_the_shear():
+    one, other = (
+        drape(SADDLE, effect, origin=MIDDLE, angle=20.0, pitch=6.0)
+        for effect in ("yarn-bending:length=0.001", "shear-stiffness:ratio=0.001")
+    )
+    np.testing.assert_allclose(one.points, other.points, atol=1e-4)
+
+
+def test_the_length_is_that_to_the_stiffness_in_shear_that_is_given():
+    for fabric, ratio in (({}, BENT_RATIO), ({"shear_stiffness": 0.01}, 0.01), ({"shear_asymmetry": 0.2}, DEFAULT_RATIO)):
+        law = posed(SADDLE, MIDDLE, 12.0, bending_length=30.0, **fabric)[1].law
+        assert law.ratio == ratio
+        assert law.bend == pytest.approx(900.0 * ratio)
+
+
+def test_effects_of_bending_add_their_stiffness():
+    effects = [gd.effects.make("yarn-bending", length=value) for value in (30.0, 40.0)]
+    net = gd.drape(SADDLE, MIDDLE, 20.0, 12.0, effects=effects, project=True)
+    assert net.fabric.bending_length == pytest.approx(50.0)
