@@ -154,7 +154,11 @@ def test_a_length_of_nothing_leaves_the_net_to_the_shear():
 
 
 def test_the_length_is_that_to_the_stiffness_in_shear_that_is_given():
-    for fabric, ratio in (({}, BENT_RATIO), ({"shear_stiffness": 0.01}, 0.01), ({"shear_asymmetry": 0.2}, DEFAULT_RATIO)):
+    for fabric, ratio in (
+        ({}, BENT_RATIO),
+        ({"shear_stiffness": 0.01}, 0.01),
+        ({"shear_asymmetry": 0.2}, DEFAULT_RATIO),
+    ):
         law = posed(SADDLE, MIDDLE, 12.0, bending_length=30.0, **fabric)[1].law
         assert law.ratio == ratio
         assert law.bend == pytest.approx(900.0 * ratio)
