@@ -103,14 +103,24 @@ def sines(p: Array, corners: Index, sign: Array) -> Block:
     return Block(sign * sine, corners, np.stack([-by_a - by_b, by_a, by_b], axis=1))
 
 
-def turns(p: Array, bends: Index, normal: Array) -> Block:
-    """Turn in the sheet, rad, at each middle node of ``bends``; ``normal`` (n, 3) taken as fixed."""
+def turns(p: Array, bends: Index, normal: Array, turning: Array) -> Block:
+    """Turn in the sheet, rad, at each middle node of ``bends``: t' − t along left = n × (t + t'), as a unit vector.
+
+    The ``normal`` (n, 3) turns by ``turning`` (n, 3, 3) per mm: without that, saddles would bend like plates.
+    """
     first, second = p[bends[:, 1]] - p[bends[:, 0]], p[bends[:, 2]] - p[bends[:, 1]]
     size_1, size_2 = (np.linalg.norm(x, axis=1, keepdims=True) for x in (first, second))
-    left = np.cross(normal[bends[:, 1]], first / size_1 + second / size_2)
-    left /= np.linalg.norm(left, axis=1, keepdims=True)
-    value = np.sum((second / size_2 - first / size_1) * left, axis=1)
-    return Block(value, bends, np.stack([left / size_1, -left / size_1 - left / size_2, left / size_2], axis=1))
+    t1, t2, n = first / size_1, second / size_2, normal[bends[:, 1]]
+    left = np.cross(n, t1 + t2)
+    size = np.linalg.norm(left, axis=1, keepdims=True)
+    left /= size
+    value = np.sum((t2 - t1) * left, axis=1, keepdims=True)
+    off = (t2 - t1 - value * left) / size  # what ``left`` sees when it turns itself
+    by_1, by_2 = np.cross(off, n) - left, np.cross(off, n) + left
+    by_1 = (by_1 - t1 * np.sum(by_1 * t1, axis=1, keepdims=True)) / size_1
+    by_2 = (by_2 - t2 * np.sum(by_2 * t2, axis=1, keepdims=True)) / size_2
+    by_normal = np.einsum("nr,nrs->ns", np.cross(t1 + t2, off), turning[bends[:, 1]])
+    return Block(value[:, 0], bends, np.stack([-by_1, by_1 - by_2 + by_normal, by_2], axis=1))
 
 
 def scaled(block: Block, factor: Array | float, shift: Array | float = 0.0) -> Block:
@@ -120,9 +130,15 @@ def scaled(block: Block, factor: Array | float, shift: Array | float = 0.0) -> B
 
 
 def blocks(
-    p: Array, normal: Array, net: Topology, rest: Array, side: float, recipe: Recipe, aim: Array
+    p: Array,
+    normal: tuple[Array, Array],
+    net: Topology,
+    rest: Array,
+    side: float,
+    recipe: Recipe,
+    aim: Array,
 ) -> list[Block]:
-    """All residuals of the recipe at the nodes ``p`` (n, 3).
+    """All residuals of the recipe at the nodes ``p`` (n, 3), whose unit ``normal`` is (n, 3), and turns (n, 3, 3).
 
     ``aim`` (c,): sin γ that slipping crossings go for, or, where nothing slips, at which friction holds them.
     """
@@ -141,7 +157,7 @@ def blocks(
     if recipe.lock and not recipe.stiffness:
         found.append(resting(shear, aim))
     if recipe.bending:
-        found.append(scaled(turns(p, net.bends, normal), np.sqrt(recipe.bending) / side))
+        found.append(scaled(turns(p, net.bends, *normal), np.sqrt(recipe.bending) / side))
     return found
 
 

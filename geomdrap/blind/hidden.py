@@ -111,8 +111,10 @@ def _order(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[str,
 
 
 def _bending(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[str, float], dict[str, Any]]:
-    length = amount * rng.uniform(2.5, 5.0)
-    return {"length": length}, {"bending": length**2, "stiffness": BENT_RATIO}
+    # bending·turn²/side² a bend and ratio·sin²γ/4 a corner: as in the library, where bending = ratio·length² and the
+    # side is the mean of two rest lengths; its turn is sin θ, here it is 2 sin(θ/2), which differ as θ³
+    length = float(amount * rng.uniform(2.5, 5.0) / np.sqrt(BENT_RATIO))
+    return {"length": length}, {"bending": BENT_RATIO * length**2, "stiffness": BENT_RATIO}
 
 
 def _heat(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[str, float], dict[str, Any]]:
@@ -132,10 +134,10 @@ HIDDEN: dict[str, Hidden] = {
     "locking": Hidden(_locking, MUCH_SHEARED),
     "springback": Hidden(_springback, SHEARED),
     "shear-asymmetry": Hidden(_asymmetry, RELAXING),
+    "yarn-bending": Hidden(_bending, ("dome", "saddle")),
     "crossing-slip": Hidden(_crossing, MUCH_SHEARED),
     "gravity-sag": Hidden(_sag, known=False),
     "drape-order": Hidden(_order, known=False),
-    "yarn-bending": Hidden(_bending, ("dome", "saddle"), known=False),
     "heat-growth": Hidden(_heat, known=False),
 }
 

@@ -81,7 +81,7 @@ def _check(options: Options) -> None:
 def _marks(case: Case, options: Options) -> tuple[Marks, tuple[float, float]]:
     """The true marks with scatter, and the side of the cells and spacing of the marks that were used, mm."""
     spacing = SPACING * options.size
-    coarse = case.recipe.share > 0.0 or case.recipe.bending > 0.0  # these couple nodes far apart: half as fine
+    coarse = case.recipe.share > 0.0  # whole yarns couple nodes far apart: half as fine
     side = spacing / (SIDES_PER_MARK / 2 if coarse else SIDES_PER_MARK)
     ply = lay(case.tool, case.recipe, side)
     uv = fabric_points(ply, spacing)

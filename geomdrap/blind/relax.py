@@ -11,7 +11,7 @@ import numpy as np
 
 from geomdrap.blind.energy import HELD, KEPT, Block, Topology, blocks, sines, strains, topology
 from geomdrap.blind.recipe import Recipe
-from geomdrap.blind.sheet import Sheet, normals
+from geomdrap.blind.sheet import Sheet, normals, turnings
 from geomdrap.blind.terms import Array
 from geomdrap.errors import GeomdrapError
 
@@ -79,11 +79,12 @@ class _Problem:
         along = self.sums @ self._matrix(strains(p, self.net.sides, self.rest), px, py)
         return (jacobian.T @ jacobian).tocsc(), along, gradient + along.T @ self._kept(p)
 
-    def _at(self, xy: Array) -> tuple[Array, Array, Array, Array]:
+    def _at(self, xy: Array) -> tuple[Array, tuple[Array, Array], Array, Array]:
         p, px, py = self.sheet(xy)
-        return p, normals(self.sheet, xy) if self.recipe.bending else p, px, py
+        normal = (normals(self.sheet, xy), turnings(self.sheet, xy)) if self.recipe.bending else (p, p)
+        return p, normal, px, py
 
-    def _blocks(self, p: Array, normal: Array) -> list[Block]:
+    def _blocks(self, p: Array, normal: tuple[Array, Array]) -> list[Block]:
         return [*blocks(p, normal, self.net, self.rest, self.side, self.recipe, self.aim), self._held(p)]
 
     def _matrix(self, block: Block, px: Array, py: Array) -> Any:

@@ -12,6 +12,8 @@ import numpy as np
 
 from geomdrap.blind.terms import Array, Term
 
+APART = 1e-3  # mm
+
 Sheet = Callable[[Array], tuple[Array, Array, Array]]
 """(n, 2) plan points mm -> (n, 3) points mm, (n, 3) tangents along x, (n, 3) tangents along y."""
 
@@ -69,3 +71,16 @@ def normals(sheet: Sheet, xy: Array) -> Array:
     _, along_x, along_y = sheet(xy)
     n = np.cross(along_x, along_y)
     return n / np.linalg.norm(n, axis=1, keepdims=True)
+
+
+def turnings(sheet: Sheet, xy: Array) -> Array:
+    """How the unit normals turn, (n, 3, 3) per mm along the sheet, by differences over ``APART``."""
+    _, px, py = sheet(xy)
+    xx, xy_, yy = (np.sum(a * b, axis=1)[:, None] for a, b in ((px, px), (px, py), (py, py)))
+    area = xx * yy - xy_ * xy_
+    duals = (yy * px - xy_ * py) / area, (xx * py - xy_ * px) / area
+    turning = np.zeros((len(xy), 3, 3))
+    for step, dual in zip(APART * np.eye(2), duals, strict=True):
+        change = (normals(sheet, xy + step) - normals(sheet, xy - step)) / (2.0 * APART)
+        turning += change[:, :, None] * dual[:, None, :]
+    return turning

@@ -24,6 +24,7 @@ LIBRARY = (
     "shear-stiffness",
     "locking",
     "shear-asymmetry",
+    "yarn-bending",
     "crossing-slip",
     "springback",
 )

@@ -22,7 +22,7 @@ class ShearStiffness(Effect):
     source = "energy-minimal nets, e.g. A. Sharma and M. Sutcliffe, Composites A 35 (2004)"
     stage = "fabric"
     seen_by = "marked crossings, shear, fibre directions"
-    confounded_with = ("steering", "shear-asymmetry", "locking")
+    confounded_with = ("steering", "shear-asymmetry", "locking", "yarn-bending")
     costly = True
     acts_at_once = True  # a value near 0 acts as much as one that is clearly not 0
     parameters = (Parameter("ratio", "", 0.0, 1.0, 0.003, 0.0, "shear stiffness as a share of that of the yarns"),)

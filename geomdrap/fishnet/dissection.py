@@ -2,7 +2,8 @@
 
 A rectangle of the net is cut in two by a line of nodes, each half again, down to a few nodes. What lies inside a
 rectangle is eliminated before the line that cuts it, so that it meets only the ring of nodes around the rectangle:
-the system falls apart into small dense ones (fronts), each of which passes on what is left on its ring.
+the system falls apart into small dense ones (fronts), each of which passes on what is left on its ring. Where nodes
+also meet those next but one along their yarns (a reach of 2), cuts and rings are two nodes wide.
 
 Whole yarns may have an unknown each, their tension, which meets all nodes of the yarn. It is eliminated with the
 smallest rectangle that holds the whole yarn.
@@ -20,6 +21,7 @@ from geomdrap.geodesic.compiled import kernel, tight
 
 LEAF = 16  # nodes of a rectangle that is not cut any more
 AFTER = (0, 0), (0, 1), (1, -1), (1, 0), (1, 1)  # a node itself, and those after it that it meets
+FURTHER = (*AFTER, (0, 2), (2, 0))  # with a reach of 2
 
 
 class Fronts(NamedTuple):
@@ -37,10 +39,11 @@ class Fronts(NamedTuple):
 
 
 @kernel
-def rectangles(number: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def rectangles(number: np.ndarray, reach: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Nested rectangles i0, i1, j0, j1 (m, 4) of nodes ``number`` (nu, nv), larger ones first, their cuts and halves.
 
-    Cuts (m, 2) are the axis, -1 for none, and the row or column; halves (m, 2) are rectangles, -1 for empty ones.
+    Cuts (m, 2) are the axis, -1 for none, and the first of ``reach`` rows or columns; halves (m, 2) are rectangles,
+    -1 for empty ones.
     """
     most = 2 * number.size + 1
     box, cut, halves = np.zeros((most, 4), np.int64), np.full((most, 2), -1), np.full((most, 2), -1)
@@ -54,7 +57,7 @@ def rectangles(number: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
             cut[at, 0], cut[at, 1] = axis, middle
             for half in range(2):
                 box[count] = box[at]
-                box[count, 2 * axis + 1 - half] = middle + half
+                box[count, 2 * axis + 1 - half] = middle + half * reach
                 if (number[box[count, 0] : box[count, 1], box[count, 2] : box[count, 3]] >= 0).any():
                     halves[at, half] = count
                     count += 1
@@ -78,16 +81,25 @@ def homes_of_yarns(box: np.ndarray, nu: int, nv: int) -> np.ndarray:
 
 @tight
 def list_nodes(
-    number: np.ndarray, box: np.ndarray, cut: np.ndarray, at: int, ring: bool, unknowns: np.ndarray, count: int
+    number: np.ndarray,
+    box: np.ndarray,
+    cut: np.ndarray,
+    at: int,
+    ring: bool,
+    reach: int,
+    unknowns: np.ndarray,
+    count: int,
 ) -> int:
     """Put the unknowns of a rectangle's cut, or of all if it has none, or of its ring on the list: its new length."""
     i0, i1, j0, j1 = box[at, 0], box[at, 1], box[at, 2], box[at, 3]
-    margin = 1 if ring else 0
+    margin = reach if ring else 0
     for i in range(max(i0 - margin, 0), min(i1 + margin, number.shape[0])):
         for j in range(max(j0 - margin, 0), min(j1 + margin, number.shape[1])):
-            inside = i0 <= i < i1 and j0 <= j < j1
-            on_cut = cut[at, 0] < 0 or (i if cut[at, 0] == 0 else j) == cut[at, 1]
-            if number[i, j] >= 0 and (not inside if ring else on_cut):
+            away_i, away_j = max(i0 - i, i - i1 + 1, 0), max(j0 - j, j - j1 + 1, 0)
+            met = (away_i < 2 and away_j < 2) or away_i * away_j == 0  # next but one only along a yarn
+            on_ring = away_i + away_j > 0 and met
+            on_cut = cut[at, 0] < 0 or 0 <= (i if cut[at, 0] == 0 else j) - cut[at, 1] < reach
+            if number[i, j] >= 0 and (on_ring if ring else on_cut):
                 unknowns[count], unknowns[count + 1] = 2 * number[i, j], 2 * number[i, j] + 1
                 count += 2
     return count
@@ -117,10 +129,13 @@ def list_yarns(
 
 
 @kernel
-def dissect(number: np.ndarray, n: int, yarns: bool) -> Fronts:
-    """Fronts for n nodes ``number`` (nu, nv), -1 for none; with ``yarns`` also of nv warp and nu weft yarns."""
+def dissect(number: np.ndarray, n: int, yarns: bool, reach: int = 1) -> Fronts:
+    """Fronts for n nodes ``number`` (nu, nv), -1 for none; with ``yarns`` also of nv warp and nu weft yarns.
+
+    Nodes meet those ``AFTER`` them, with a ``reach`` of 2 also those ``FURTHER``.
+    """
     nu, nv = number.shape
-    box, cut, cut_halves = rectangles(number)
+    box, cut, cut_halves = rectangles(number, reach)
     m = len(box)
     home = np.zeros(2 * n + (nu + nv if yarns else 0), np.int64)
     if yarns:
@@ -133,12 +148,12 @@ def dissect(number: np.ndarray, n: int, yarns: bool) -> Fronts:
         for half in range(2):
             if cut_halves[at, half] >= 0:
                 halves[f, half] = m - 1 - cut_halves[at, half]
-        most = 8 * (box[at, 1] - box[at, 0] + box[at, 3] - box[at, 2]) + 2 * LEAF + 16
+        most = 8 * reach * (box[at, 1] - box[at, 0] + box[at, 3] - box[at, 2]) + 2 * LEAF + 16
         if count + most > len(unknowns):
             unknowns = np.concatenate((unknowns, np.empty(len(unknowns) + most, np.int64)))
         for ring in range(2):
             before = count
-            count = list_nodes(number, box, cut, at, ring == 1, unknowns, count)
+            count = list_nodes(number, box, cut, at, ring == 1, reach, unknowns, count)
             if ring == 0:
                 home[unknowns[before:count]] = f
             if yarns:

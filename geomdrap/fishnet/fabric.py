@@ -19,8 +19,9 @@ class Fabric:
     sides are longer than in the flat fabric, and ``strain_growth_warp``, ``strain_growth_weft``, more strain per mm
     from the axis through the seed; ``curvature_warp``, ``curvature_weft`` of the generators, 1/mm, positive to the
     left; ``slip``, the exponent s with which weft sides grow as 1/cos(γ)^s; ``shear_stiffness`` as a share of the
-    yarns' own, ``locking_angle`` degrees and ``shear_asymmetry`` from -1 to 1, with any of which the net is relaxed
-    to least energy (None: it is not).
+    yarns' own, ``locking_angle`` degrees, ``shear_asymmetry`` from -1 to 1 and ``bending_length`` mm, the root of the
+    yarns' stiffness in bending in the surface over the stiffness in shear, with any of which the net is relaxed to
+    least energy (None: it is not).
     Raises DrapeError for angles out of range.
     """
 
@@ -36,6 +37,7 @@ class Fabric:
     shear_stiffness: float | None = None
     locking_angle: float | None = None
     shear_asymmetry: float | None = None
+    bending_length: float | None = None
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.limit_angle) and 0.0 < self.limit_angle <= 90.0):
@@ -45,8 +47,9 @@ class Fabric:
 
     @property
     def relaxes(self) -> bool:
-        """Whether the fabric resists shear, so that its net is one of least energy."""
-        return not (self.shear_stiffness is None and self.locking_angle is None and self.shear_asymmetry is None)
+        """Whether the fabric resists shear or bending, so that its net is one of least energy."""
+        given = self.shear_stiffness, self.locking_angle, self.shear_asymmetry, self.bending_length
+        return any(value is not None for value in given)
 
     @property
     def stretches(self) -> bool:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from geomdrap.fishnet.dissection import AFTER, Fronts
+from geomdrap.fishnet.dissection import FURTHER, Fronts
 from geomdrap.geodesic.compiled import kernel, tight
 
 
@@ -79,10 +79,10 @@ def add_own(
         a[t, t] += blocks[node, 0, r, r]
         if r == 0:
             a[t, t + 1] += blocks[node, 0, 0, 1]
-        for k in range(1, len(AFTER)):
+        for k in range(1, blocks.shape[1]):
             for turn in range(2):  # those after the node, and those before it
-                k_i = i + AFTER[k][0] if turn == 0 else i - AFTER[k][0]
-                k_j = j + AFTER[k][1] if turn == 0 else j - AFTER[k][1]
+                k_i = i + FURTHER[k][0] if turn == 0 else i - FURTHER[k][0]
+                k_j = j + FURTHER[k][1] if turn == 0 else j - FURTHER[k][1]
                 if k_i < 0 or k_j < 0 or k_i >= number.shape[0] or k_j >= number.shape[1]:
                     continue
                 other = number[k_i, k_j]
@@ -144,9 +144,9 @@ def solve(
 ) -> np.ndarray:
     """Solution (2n,) for ``right`` (2n,).
 
-    ``blocks`` (n, 5, 2, 2) of each node with those ``AFTER`` it; ``slopes`` (2, 2n) of the unknowns with the tensions
-    of their warp and weft yarns, whose diagonal is -``soft``: with soft = 1/κ the matrix is that with κ·slope·slopeᵀ
-    added. With soft = 0 there are no yarns. Not finite where a pivot vanishes.
+    ``blocks`` (n, 5, 2, 2) of each node with those ``AFTER`` it, or (n, 7, 2, 2) ``FURTHER``; ``slopes`` (2, 2n)
+    of the unknowns with the tensions of their warp and weft yarns, whose diagonal is -``soft``: with soft = 1/κ the
+    matrix is that with κ·slope·slopeᵀ added. With soft = 0 there are no yarns. Not finite where a pivot vanishes.
     """
     m = len(fronts.own)
     held, passed = np.zeros(m + 1, np.int64), np.zeros(m + 1, np.int64)

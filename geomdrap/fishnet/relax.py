@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.fishnet.dissection import dissect
+from geomdrap.fishnet.relax_bending import bending_energy
 from geomdrap.fishnet.relax_energy import energy
 from geomdrap.fishnet.relax_equations import Equations, equations_at, newton_step
 from geomdrap.fishnet.relax_surface import Footing, stand
@@ -57,8 +58,9 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
         x[node] = place
     footing = stand(problem.surface, problem.corner_normals, x[problem.nodes])
     x[problem.nodes] = footing.lifted
-    now, damping, stuck = _energy(problem, x), 0.0, 0
-    fronts = dissect(problem.number, len(footing.face), problem.law.yarn > 0.0)
+    now, damping, stuck = _energy(problem, x, footing), 0.0, 0
+    law = problem.law
+    fronts = dissect(problem.number, len(footing.face), law.yarn > 0.0, 2 if law.bend > 0.0 else 1)
     full = False  # far from the end second derivatives need not be positive
     best = mark = Relaxed(x, footing, now, math.inf, 0)
     for n in range(ROUNDS):
@@ -84,8 +86,10 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
     return best
 
 
-def _energy(problem: Problem, x: np.ndarray) -> float:
-    return float(energy(x, problem.valid, problem.target, problem.rest_u, problem.rest_v, problem.law))
+def _energy(problem: Problem, x: np.ndarray, footing: Footing) -> float:
+    rests, law = (problem.rest_u, problem.rest_v), problem.law
+    bent = bending_energy(x, problem.on_net(footing.normal), *rests, law.bend) if law.bend > 0.0 else 0.0
+    return float(energy(x, problem.valid, problem.target, *rests, law) + bent)
 
 
 def _searched(
@@ -107,7 +111,7 @@ def _searched(
         moved = stand(problem.surface, problem.corner_normals, footing.point + share * way, footing)
         y = x.copy()
         y[problem.nodes] = moved.lifted
-        then = _energy(problem, y)
+        then = _energy(problem, y, moved)
         near = whole and (equations.unrest < GOOD_ENOUGH or gain < UNEVEN * now)
         if then <= now * (1.0 + (UNEVEN if near else ROUNDING)):
             return y, moved, then, whole

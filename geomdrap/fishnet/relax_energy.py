@@ -1,7 +1,7 @@
 """Energy of a net that resists stretching and shear, with its exact first and second derivatives.
 
-E = piece·Σ e² over yarn pieces + yarn·Σ (Σ e)² over whole yarns + Σ W(s) over corners of cells, with the strain
-e = l/c − 1 of a piece, s = sin γ at a corner, s* its target, and
+E = piece·Σ e² over yarn pieces + yarn·Σ (Σ e)² over whole yarns + Σ W(s) over corners of cells, and what
+``relax_bending`` has, with the strain e = l/c − 1 of a piece, s = sin γ at a corner, s* its target, and
 W = ratio/4·(1 ± alpha)·(s − s*)² + lock/4·(|s| − s_lock)²₊.
 Usually piece = 1, and yarn and targets are 0; with yarn in place of piece, yarns slide at their crossings; with the
 sines of the geometric net for targets, friction holds the shear as it was laid. Lengths and angles
@@ -28,6 +28,7 @@ class Law(NamedTuple):
     lock_sine: float = 1.0
     piece: float = 1.0
     yarn: float = 0.0
+    bend: float = 0.0
 
 
 @inlined

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.fishnet.multifrontal import solve
+from geomdrap.fishnet.relax_bending import add_bending
 from geomdrap.fishnet.relax_energy import chords, derivatives
 from geomdrap.fishnet.relax_surface import tangents
 from geomdrap.geodesic.compiled import kernel
@@ -31,8 +32,9 @@ class Equations:
     """Newton's equations.
 
     ``gradient`` (2n,) and ``blocks`` (n, 5, 2, 2) of the second derivative along the tangent vectors ``bases``
-    (n, 3, 2), of each node and those ``AFTER`` it; ``unrest`` as in ``Relaxed``; ``slopes`` (2, 2n) of the strain
-    sums of the two yarns through a node, 0 where whole yarns have no stiffness.
+    (n, 3, 2), of each node and those ``AFTER`` it, with bending (n, 7, 2, 2) those ``FURTHER``; ``unrest`` as in
+    ``Relaxed``; ``slopes`` (2, 2n) of the strain sums of the two yarns through a node, 0 where whole yarns have no
+    stiffness.
     """
 
     gradient: np.ndarray
@@ -50,6 +52,12 @@ def equations_at(problem: Problem, x: np.ndarray, footing: Footing, full: bool) 
     g, h, size = derivatives(
         x, basis, problem.valid, problem.target, problem.rest_u, problem.rest_v, problem.law, full
     )
+    if problem.law.bend > 0.0:
+        h = np.concatenate((h, np.zeros((*h.shape[:2], 2, 2, 2))), axis=2)
+        turning = np.zeros((*x.shape, 3))
+        turning[problem.nodes] = footing.turning
+        rests = problem.rest_u, problem.rest_v
+        add_bending(x, basis, problem.on_net(footing.normal), turning, *rests, problem.law.bend, full, g, h, size)
     force, blocks = g[problem.nodes], h[problem.nodes]
     gradient = along_tangents(force, bases, footing.normal, footing.turning, blocks, full)
     for node, first in ((problem.fixed, 0), (problem.guided, 1)):

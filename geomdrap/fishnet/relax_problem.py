@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 DEFAULT_RATIO = 0.003  # shear stiffness where only its asymmetry is given
+BENT_RATIO = 0.001  # where only bending is given: it meets the length, and the net hardly depends on this
 HELD = 0.02  # shear stiffness about the ply as it was laid, where only a locking angle is given
 LOCK_STIFFNESS = 1.0  # of the yarns: resistance to shear beyond the locking angle
 
@@ -46,24 +47,31 @@ class Problem:
     held: np.ndarray
     side: np.ndarray
 
+    def on_net(self, vectors: np.ndarray) -> np.ndarray:
+        """Vectors (n, 3) of the nodes that move as (nu, nv, 3), 0 elsewhere."""
+        out = np.zeros(self.x0.shape)
+        out[self.nodes] = vectors
+        return out
+
 
 def law_of(fabric: Fabric) -> Law:
     """The energy of a fabric; where only a locking angle is given, friction at the crossings resists below it."""
-    angle = fabric.locking_angle
-    default = DEFAULT_RATIO if fabric.shear_asymmetry else 0.0
-    ratio = fabric.shear_stiffness or default or HELD
+    angle, length = fabric.locking_angle, fabric.bending_length or 0.0
+    default = DEFAULT_RATIO if fabric.shear_asymmetry else BENT_RATIO if length else HELD
+    ratio = fabric.shear_stiffness or default
     return Law(
         ratio=ratio,
         alpha=fabric.shear_asymmetry or 0.0,
         lock=0.0 if angle is None else LOCK_STIFFNESS,
         lock_sine=1.0 if angle is None else math.sin(math.radians(angle)),
+        bend=ratio * length**2,
     )
 
 
 def problem_of(net: Net) -> Problem:
     """The problem of relaxing a net of its fabric. Raises DrapeError where the seed has no cell beside it."""
     problem = pose(net, law_of(net.fabric))
-    if net.fabric.shear_stiffness or net.fabric.shear_asymmetry:
+    if net.fabric.shear_stiffness or net.fabric.shear_asymmetry or net.fabric.bending_length:
         return problem
     # without a stiffness in shear many nets are minimal, and yarns under pressure buckle from node to node
     return replace(problem, target=chord_sines(problem.x0, problem.valid))

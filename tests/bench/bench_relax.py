@@ -23,6 +23,7 @@ NODES = 900, 2_000, 5_000, 8_000
 LAWS = (
     ("shear-stiffness", {"ratio": 0.003}),
     ("shear-asymmetry", {"alpha": 0.2}),
+    ("yarn-bending", {"length": 60.0}),
     ("locking", {"angle": 20.0}),
     ("crossing-slip", {"share": 0.3, "onset": 5.0}),
 )

@@ -19,6 +19,7 @@ RECIPES = {
     "stiffness": Recipe(stiffness=0.003),
     "asymmetry": Recipe(stiffness=0.003, asymmetry=0.4),
     "locking": Recipe(lock=12.0),
+    "bending": Recipe(stiffness=0.001, bending=6.0),
     "crossing-slip": Recipe(share=0.3, onset=3.0),
 }
 
@@ -70,9 +71,7 @@ def test_the_seed_and_the_heading_of_the_first_warp_side_are_held(geometric, net
 
 
 def test_shear_stiffness_lowers_the_shear_and_locking_stops_it_near_the_angle(geometric, nets):
-    plain, stiff, locked = (
-        np.abs(node_shear(net.points)) for net in (geometric, nets["stiffness"], nets["locking"])
-    )
+    plain, stiff, locked = (np.abs(node_shear(net.points)) for net in (geometric, nets["stiffness"], nets["locking"]))
     assert np.nanmean(stiff**2) < np.nanmean(plain**2)
     assert np.nanpercentile(plain, 97) > 20.0
     assert np.nanpercentile(locked, 97) < 13.0

@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 
-from geomdrap.fishnet.dissection import AFTER, dissect
+from geomdrap.fishnet.dissection import AFTER, FURTHER, dissect
 from geomdrap.fishnet.multifrontal import solve
 
 
-def net(shape, missing, seed):
+def net(shape, missing, seed, after=AFTER):
     """Numbers of nodes (nu, nv), some without, and random symmetric blocks, with what makes them positive."""
     rng = np.random.default_rng(seed)
     here = rng.random(shape) >= missing
     number = np.full(shape, -1)
     number[here] = np.arange(here.sum())
-    blocks = rng.normal(size=(here.sum(), len(AFTER), 2, 2))
+    blocks = rng.normal(size=(here.sum(), len(after), 2, 2))
     blocks[:, 0] = blocks[:, 0] + blocks[:, 0].swapaxes(1, 2) + 20.0 * np.eye(2)
     return np.nonzero(here), number, blocks, rng
 
@@ -23,7 +23,7 @@ def dense(nodes, number, blocks):
     n = len(blocks)
     matrix = np.zeros((n, 2, n, 2))
     for node, (i, j) in enumerate(zip(*nodes, strict=True)):
-        for k, (di, dj) in enumerate(AFTER):
+        for k, (di, dj) in enumerate(FURTHER[: blocks.shape[1]]):
             if i + di < number.shape[0] and 0 <= j + dj < number.shape[1] and number[i + di, j + dj] >= 0:
                 other = number[i + di, j + dj]
                 matrix[other, :, node] = blocks[node, k].T
@@ -34,12 +34,13 @@ def dense(nodes, number, blocks):
 @pytest.mark.parametrize("shape", [(1, 2), (4, 4), (3, 40), (17, 5), (13, 14)], ids=str)
 @pytest.mark.parametrize("missing", [0.0, 0.4])
 @pytest.mark.parametrize("shift", [0.0, -19.0], ids=["positive", "indefinite"])
-def test_the_solution_is_that_of_the_dense_matrix(shape, missing, shift):
-    nodes, number, blocks, rng = net(shape, missing, 1)
+@pytest.mark.parametrize("reach", [1, 2])
+def test_the_solution_is_that_of_the_dense_matrix(shape, missing, shift, reach):
+    nodes, number, blocks, rng = net(shape, missing, 1, FURTHER if reach == 2 else AFTER)
     blocks[:, 0] += shift * np.eye(2)
     right = rng.normal(size=2 * len(blocks))
     none = np.zeros((2, len(right)))
-    found = solve(dissect(number, len(blocks), False), nodes, number, blocks, none, 0.0, right)
+    found = solve(dissect(number, len(blocks), False, reach), nodes, number, blocks, none, 0.0, right)
     np.testing.assert_allclose(dense(nodes, number, blocks) @ found, right, atol=1e-12 if shift == 0.0 else 1e-9)
 
 
@@ -58,9 +59,10 @@ def test_the_stiffness_of_whole_yarns_is_added(shape, stiffness):
     np.testing.assert_allclose(found, np.linalg.solve(matrix, right), rtol=1e-8, atol=1e-10)
 
 
-def test_every_unknown_is_eliminated_once_and_meets_only_later_ones():
+@pytest.mark.parametrize("reach", [1, 2])
+def test_every_unknown_is_eliminated_once_and_meets_only_later_ones(reach):
     _, number, blocks, _ = net((20, 11), 0.3, 4)
-    fronts = dissect(number, len(blocks), True)
+    fronts = dissect(number, len(blocks), True, reach)
     spans = [fronts.unknowns[a:b] for a, b in zip(fronts.start[:-1], fronts.start[1:], strict=True)]
     eliminated = np.concatenate([span[:own] for span, own in zip(spans, fronts.own, strict=True)])
     np.testing.assert_array_equal(np.sort(eliminated), np.arange(2 * len(blocks) + 31))
