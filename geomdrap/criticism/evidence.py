@@ -28,7 +28,8 @@ class Evidence:
     ``gain``: twice the log of how much likelier the measurement is with it; ``unknowns`` that it adds; ``p_value``
     of such a gain by chance, alone and (``p_family``) among all that were tried; ``share`` of the misfit above the
     noise that it explains; ``cv_ratio`` of held-out errors with and without it; ``in_range``: no parameter at a bound
-    where physics ends, and not all of them as good as nothing.
+    where physics ends, and not all of them as good as nothing; ``includes`` names effects that it comes to at small
+    values.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Evidence:
     share: float
     cv_ratio: float
     in_range: bool
+    includes: tuple[str, ...] = ()
 
     @property
     def found(self) -> bool:
@@ -71,13 +73,17 @@ def among_all(p_values: Sequence[float]) -> np.ndarray:
 
 
 def rivals(evidence: Sequence[Evidence]) -> tuple[str, ...]:
-    """The best effect found, and those that cannot be told from it, the best first; empty if none was found."""
+    """The best effect found, and those that cannot be told from it, the best first; empty if none was found.
+
+    What does no better than the best, and comes to it at small values, is no rival: it says the same with more.
+    """
     found = sorted((e for e in evidence if e.found), key=lambda e: e.unknowns * 2.0 - e.gain)
     if not found:
         return ()
     best = found[0]
     margin = max(RIVAL, RIVAL_SHARE * best.gain)
-    return tuple(e.name for e in found if best.gain - 2.0 * best.unknowns - (e.gain - 2.0 * e.unknowns) < margin)
+    near = [e for e in found if best.gain - 2.0 * best.unknowns - (e.gain - 2.0 * e.unknowns) < margin]
+    return tuple(e.name for e in near if best.name not in e.includes)
 
 
 def alike_in_what_they_leave(evidence: Sequence[Evidence]) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ import numpy as np
 from geomdrap.criticism.fit import STEPS, Fit, fit, take_slopes
 from geomdrap.criticism.likelihood import is_noise, square_beside
 from geomdrap.criticism.smooth import note_on
-from geomdrap.criticism.start import LEAST_GAIN, Glance, glance, start_values
+from geomdrap.criticism.start import LEAST_GAIN, TURNS, Glance, glance, start_values
 from geomdrap.effects import make
 from geomdrap.errors import GeomdrapError
 
@@ -166,11 +166,19 @@ def slow(effect: str) -> bool:
     return kind.costly or kind.stage == "surface"
 
 
-def add_effect(experiment: Experiment, whiten: Whiten, base: Fitted, look: Look, least: float = -math.inf) -> Fitted:
+def add_effect(
+    experiment: Experiment,
+    whiten: Whiten,
+    base: Fitted,
+    look: Look,
+    least: float = -math.inf,
+    turns: Sequence[float] = TURNS,
+) -> Fitted:
     """The base model with one effect more, fitted together with everything in the base.
 
     ``least`` is the chi-square of the best model known: an effect that takes long and promises to stay far above it,
-    or to explain nothing beside the likeliest scatter, is not fitted to the end.
+    or to explain nothing beside the likeliest scatter, is not fitted to the end. ``turns``, degrees, are headings at
+    which a net that turns as a whole is looked for.
     """
     model, predict, kind, seen = look.model, look.predict, make(look.effect), look.seen
     values = len(experiment.measured)
@@ -181,7 +189,7 @@ def add_effect(experiment: Experiment, whiten: Whiten, base: Fitted, look: Look,
         seen.gain < LEAST_GAIN or (nearly and _hopeless(whiten, base, seen.after, least, HOPELESS))
     ):
         return _not_fitted(model, base, seen)
-    start = start_values(experiment, predict, whiten, base, look.effect, seen)
+    start = start_values(experiment, predict, whiten, base, look.effect, seen, turns)
     low, high = model.bounds
     # what the base already has keeps its slopes; the fit mends them where they mislead it
     own = slice(len(base.values), None)

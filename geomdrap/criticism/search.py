@@ -12,9 +12,11 @@ from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.holdout import blocks_of, held_out_error
 from geomdrap.criticism.likelihood import Judge, Residuals, Scatter, deviations
 from geomdrap.criticism.model import Fitted, Look, Whiten, add_effect, look_at, slow
+from geomdrap.criticism.start import TURNS
 from geomdrap.effects import make
 
 CLEAR = 3.0  # standard deviations from nothing
+TURN = 2  # of the parameters: the heading
 CLIMB = 3  # models for which the likeliest scatter is searched: the base and the best two
 
 
@@ -48,9 +50,12 @@ def try_effects(
     """Fit every effect on top of the base, and weigh what speaks for it. ``done`` is told each name."""
     trials, failed = [], []
     least = base.fit.chi2
+    turns: Sequence[float] = TURNS
     for look in _looks(experiment, base, whiten, names, done):
         done(look.effect)
-        trial = add_effect(experiment, whiten, base, look, least)
+        trial = add_effect(experiment, whiten, base, look, least, turns)
+        if trial.fit.chi2 < least and make(look.effect).acts_at_once:
+            turns = (float(trial.values[TURN]),)  # where one net has turned to, another will have
         least = min(least, trial.fit.chi2)
         if _predicts(trial):
             trials.append(trial)
@@ -153,6 +158,7 @@ def _weigh(
                 share=min((squares[0] - squares[k + 1]) / misfit, 1.0),
                 cv_ratio=errors[k + 1] / errors[0],
                 in_range=_in_range(model, spreads[k]),
+                includes=make(model.model.effects[-1]).includes,
             )
         )
     return tuple(out)

@@ -96,8 +96,12 @@ def start_values(
     base: Fitted,
     effect: str,
     seen: Glance | None = None,
+    turns: Sequence[float] = TURNS,
 ) -> np.ndarray:
-    """Values to begin with: the best of a few probes of the new effect; ``seen``: what one look at it showed."""
+    """Values to begin with: the best of a few probes of the new effect; ``seen``: what one look at it showed.
+
+    ``turns`` are headings, degrees, at which an effect that acts at once is tried.
+    """
     own = make(effect).parameters
     p = len(base.values)
     neutral = np.array([q.neutral for q in own])
@@ -144,7 +148,7 @@ def start_values(
     if make(effect).acts_at_once and not is_noise(base.fit.chi2, len(residual)):
         # such a net turns as a whole about its seed, and the heading of its first side holds it but softly
         typical = np.array([q.typical for q in own])
-        starts += [(np.array([0.0, 0.0, turn, *meant[3:]]), typical) for turn in TURNS]
+        starts += [(np.array([0.0, 0.0, turn, *meant[3:]]), typical) for turn in turns]
     return _best_start(experiment, predict, whiten, base, starts)
 
 

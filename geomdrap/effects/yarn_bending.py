@@ -30,6 +30,7 @@ class YarnBending(Effect):
     confounded_with = ("shear-stiffness", "steering", "shear-asymmetry")
     costly = True
     acts_at_once = True  # a value near 0 relaxes the net as much as one that is clearly not 0
+    includes = ("shear-stiffness",)  # which it is where the length is short
     parameters = (
         Parameter("length", "mm", 0.0, 300.0, 60.0, 0.0, "√(bending stiffness in the surface/shear stiffness)"),
     )

@@ -29,7 +29,8 @@ class Effect:
     ``parameters``; ``seen_by``, the data that can show it; ``confounded_with``, names of effects that look alike.
     ``rank`` orders effects of one stage; ``costly`` says that a net with it takes many times as long as without;
     ``acts_at_once`` that the smallest values act as fully as others, so that ``diagnose`` finds it wherever it is not
-    neutral, and does not ask that its values differ clearly from their neutral ones.
+    neutral, and does not ask that its values differ clearly from their neutral ones; ``includes`` names effects that
+    it comes to at small values, so that it must do better than these to be found beside them.
     ``values`` are its parameters' values by name.
     Raises EffectError for parameters that it does not have, and values out of bounds.
     """
@@ -46,6 +47,7 @@ class Effect:
     rank: ClassVar[float] = 100.0
     costly: ClassVar[bool] = False
     acts_at_once: ClassVar[bool] = False
+    includes: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self, **values: float) -> None:
         known = {p.name: p for p in self.parameters}

@@ -37,6 +37,12 @@ def test_an_effect_is_found_only_if_it_passes_every_test(weaker):
     assert not replace(GOOD, **weaker).found
 
 
+def test_what_comes_to_the_best_at_small_values_and_does_no_better_is_no_rival():
+    wider = replace(GOOD, name="wider", gain=GOOD.gain - 2.0, includes=("slip",))
+    assert rivals([wider, GOOD]) == ("slip",)
+    assert rivals([replace(wider, gain=GOOD.gain + 2.0), GOOD]) == ("wider", "slip")
+
+
 def test_those_close_to_the_best_are_its_rivals_and_others_are_not():
     close, far = replace(GOOD, name="close", gain=56.0), replace(GOOD, name="far", gain=40.0)
     assert rivals([far, close, GOOD]) == ("slip", "close")
