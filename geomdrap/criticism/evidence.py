@@ -17,6 +17,7 @@ FAMILY = 0.02  # chance of finding anything where there is nothing
 FORETELLS = 0.99  # of the held-out error without the effect
 LEAST_SHARE = 0.15  # of the misfit above the noise: a smaller one is listed, not named
 RIVAL = 6.0  # of 2 log-likelihood: effects this close to the best cannot be told from it
+RIVAL_WITHIN = 20.0  # the same, of an effect that the best comes to at small values
 RIVAL_SHARE = 0.01  # of what the best explains: nor those that explain all but this much of it
 MOST, AS_MUCH = 0.9, 2.0  # share of the misfit that is nearly all of it, and times what the best leaves of it
 
@@ -75,15 +76,21 @@ def among_all(p_values: Sequence[float]) -> np.ndarray:
 def rivals(evidence: Sequence[Evidence]) -> tuple[str, ...]:
     """The best effect found, and those that cannot be told from it, the best first; empty if none was found.
 
-    What does no better than the best, and comes to it at small values, is no rival: it says the same with more.
+    What does no better than the best, and comes to it at small values, is no rival: it says the same with more. If
+    such an effect is the best, what it comes to must be clearly less likely to be no rival.
     """
     found = sorted((e for e in evidence if e.found), key=lambda e: e.unknowns * 2.0 - e.gain)
     if not found:
         return ()
     best = found[0]
     margin = max(RIVAL, RIVAL_SHARE * best.gain)
-    near = [e for e in found if best.gain - 2.0 * best.unknowns - (e.gain - 2.0 * e.unknowns) < margin]
-    return tuple(e.name for e in near if best.name not in e.includes)
+    near = []
+    for e in found:
+        behind = best.gain - 2.0 * best.unknowns - (e.gain - 2.0 * e.unknowns)
+        enough = max(margin, RIVAL_WITHIN) if e.name in best.includes else margin
+        if behind < enough and best.name not in e.includes:
+            near.append(e.name)
+    return tuple(near)
 
 
 def alike_in_what_they_leave(evidence: Sequence[Evidence]) -> tuple[str, ...]:

@@ -18,6 +18,7 @@ STEPS = 12  # most accepted or refused steps
 FIRST_STEPS = 3  # after which a fit must have come below a chi-square that is asked of it
 SMALL = 0.05  # of chi-square: a step that promises or gains less ends the fit
 LEAST_STEP = 1e-3  # of a parameter's own step, in every parameter: less ends the fit, too
+FARTHEST = 100.0  # of a parameter's own step: no further at once, since slopes tell nothing of what is far
 RAGGED = 1.0  # of chi-square: where a step along fresh slopes promises no more and fails, facets decide
 UNSEEN = 5e-3  # noises, over all values together: a parameter whose own step changes less stays where it is
 
@@ -74,6 +75,7 @@ def fit(
         # as a locking angle that no shear reaches: its slope is rounding, and would send it to the end of its range
         moves = np.linalg.norm(seen, axis=0) * steps > UNSEEN
         step = _step(seen, whiten(filled), damping, values, low, high, moves)
+        step *= min(1.0, FARTHEST / max(float(np.abs(step / steps).max()), 1e-300))
         foreseen = chi2 - _square(whiten(filled - jacobian @ step))
         if (np.abs(step) <= LEAST_STEP * steps).all() or foreseen < SMALL:
             break

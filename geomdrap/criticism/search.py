@@ -177,8 +177,9 @@ def _in_range(model: Fitted, sigma: np.ndarray) -> bool:
     """
     own = model.parameters_of(model.model.effects[-1])
     values = [(p, float(model.values[k])) for p, k in own]
+    kind = make(model.model.effects[-1])
     at_bound = [v in (p.low, p.high) and v != p.neutral and not _natural(p, v) for p, v in values]
-    if make(model.model.effects[-1]).acts_at_once:
+    if kind.acts_at_once and not kind.includes:  # else its smallest values are another effect's doing
         acts = any(v != p.neutral for p, v in values)
     else:
         acts = any(abs(v - p.neutral) > CLEAR * sigma[k] for (p, v), (_, k) in zip(values, own, strict=True))

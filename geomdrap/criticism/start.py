@@ -36,6 +36,7 @@ NOTHING = 1e-6  # of the noise: less is no signature
 BELOW_TOP = (0.85, 0.6)  # of the largest shear: thresholds at which to look once
 BELOW_SEEN = (0.5, 0.75)  # of a large value at which an effect shows: where it may begin to
 TOO_SMALL = 0.1  # noises, over all values together: a look that shows less shows rounding
+ASTRAY = (1.0, 1.0, 1.0)  # mm, mm, degrees: a base this far from where the ply was meant to lie
 LEAST_GAIN = 4.0  # of chi-square under the likely scatter: less is not looked into
 
 
@@ -44,7 +45,8 @@ class Glance:
     """One look at an effect: the best of a few ``values`` of its parameters and their ``signature`` (m,).
 
     ``gain`` is what any multiple of the signature explains under the likely scatter, of chi-square; ``after`` the
-    chi-square under the noise alone that it would leave.
+    chi-square under the noise alone that it would leave. An effect that is costly is looked at from where the ply was
+    meant to lie, too.
     """
 
     values: np.ndarray
@@ -64,14 +66,31 @@ def glance(
     """Look at an effect once; ``likely`` whitens with the base's likeliest scatter, ``whiten`` with the noise."""
     residual = np.nan_to_num(base.fit.residual)
     there = experiment.measured - base.fit.residual
+    slopes = base.fit.slopes
+    before = square_beside(likely(residual), likely(slopes))
+    meant = as_meant(base)
+    astray = bool((np.abs(meant - base.values)[:3] > ASTRAY).any()) and make(effect).costly
     seen = []
     for values in _first_looks(make(effect).parameters, experiment.top_shear):
         signature = np.nan_to_num(predict(np.append(base.values, values)) - there)
-        both = np.column_stack([base.fit.slopes, signature])
-        before, after = (square_beside(likely(residual), likely(s)) for s in (base.fit.slopes, both))
-        gain = before - after if np.linalg.norm(whiten(signature)) > TOO_SMALL else 0.0
-        seen.append(Glance(values, signature, gain, square_beside(whiten(residual), whiten(both))))
+        both = np.column_stack([slopes, signature])
+        gain = before - square_beside(likely(residual), likely(both))
+        gain = gain if np.linalg.norm(whiten(signature)) > TOO_SMALL else 0.0
+        after = square_beside(whiten(residual), whiten(both))
+        if astray:
+            left = experiment.measured - predict(np.append(meant, values))
+            left = np.where(np.isnan(left), residual, left)
+            gain = max(gain, before - square_beside(likely(left), likely(slopes)))
+            after = min(after, square_beside(whiten(left), whiten(slopes)))
+        seen.append(Glance(values, signature, gain, after))
     return max(seen, key=lambda one: one.gain)
+
+
+def as_meant(base: Fitted) -> np.ndarray:
+    """Values (p,) of a base with the ply where it was meant to lie: without the effect it may have gone astray."""
+    meant = base.values.copy()
+    meant[:3] = 0.0
+    return meant
 
 
 def _first_looks(own: Sequence[Parameter], top: float) -> list[np.ndarray]:
@@ -142,9 +161,8 @@ def start_values(
             (_scaled(shape, own, acting, signature, whiten, residual, shifts) for shape in _shapes(own, acting)),
             key=misfit,
         )
-    meant = base.values.copy()
-    meant[:3] = 0.0
-    starts = [(base.values, best), (meant, best)]  # a base without the effect may have gone far astray for it
+    meant = as_meant(base)
+    starts = [(base.values, best), (meant, best)]
     if make(effect).acts_at_once and not is_noise(base.fit.chi2, len(residual)):
         # such a net turns as a whole about its seed, and the heading of its first side holds it but softly
         typical = np.array([q.typical for q in own])

@@ -41,6 +41,8 @@ def test_what_comes_to_the_best_at_small_values_and_does_no_better_is_no_rival()
     wider = replace(GOOD, name="wider", gain=GOOD.gain - 2.0, includes=("slip",))
     assert rivals([wider, GOOD]) == ("slip",)
     assert rivals([replace(wider, gain=GOOD.gain + 2.0), GOOD]) == ("wider", "slip")
+    assert rivals([replace(wider, gain=GOOD.gain + 15.0), GOOD]) == ("wider", "slip")
+    assert rivals([replace(wider, gain=GOOD.gain + 30.0), GOOD]) == ("wider",)
 
 
 def test_those_close_to_the_best_are_its_rivals_and_others_are_not():
