@@ -19,6 +19,7 @@ SHEARED = ("dome", "saddle", "double-bump", "ridge", "pan")
 RELAXING = ("dome", "saddle", "double-bump", "ridge")
 MUCH_SHEARED = ("dome", "saddle", "double-bump")
 ASYMMETRIC_RATIO = 0.003  # shear stiffness of the nets whose stiffness depends on the sign of the shear
+LONGEST_BENT = 280.0  # mm
 BENT_RATIO = 0.001  # with less, yarns stay straight by shearing the whole net to a slant
 
 Draw = Callable[[np.random.Generator, float, float], tuple[dict[str, float], dict[str, Any]]]
@@ -113,7 +114,7 @@ def _order(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[str,
 def _bending(rng: np.random.Generator, amount: float, _: float) -> tuple[dict[str, float], dict[str, Any]]:
     # bending·turn²/side² a bend and ratio·sin²γ/4 a corner: as in the library, where bending = ratio·length² and the
     # side is the mean of two rest lengths; its turn is sin θ, here it is 2 sin(θ/2), which differ as θ³
-    length = float(amount * rng.uniform(2.5, 5.0) / np.sqrt(BENT_RATIO))
+    length = min(float(amount * rng.uniform(2.5, 5.0) / np.sqrt(BENT_RATIO)), LONGEST_BENT)
     return {"length": length}, {"bending": BENT_RATIO * length**2, "stiffness": BENT_RATIO}
 
 

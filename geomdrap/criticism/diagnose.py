@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.criticism.cleaned import cleaned, outliers_of
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
-from geomdrap.criticism.evidence import alike_in_what_they_leave, rivals
+from geomdrap.criticism.evidence import alike_in_what_they_leave, rivals, says_the_same
 from geomdrap.criticism.experiment import Experiment, Layup, restless
 from geomdrap.criticism.jackknife import widened
 from geomdrap.criticism.leftover import Leftover, leftover
@@ -34,13 +35,10 @@ from geomdrap.criticism.table import tried_of, values_of
 from geomdrap.criticism.threads import one_blas_thread
 from geomdrap.criticism.words import hints_for
 from geomdrap.effects import available, make
-from geomdrap.measurement.match import match
-from geomdrap.measurement.outliers import find_outliers
 
 if TYPE_CHECKING:
     from geomdrap.fishnet.seed import Origin
     from geomdrap.measurement import Measurement
-    from geomdrap.measurement.outliers import Outlier
     from geomdrap.surface import Surface
 
 Progress = Callable[[float, str], None]
@@ -86,17 +84,23 @@ def diagnose(
         experiment, notes = prepare(surface, measurement, layup, sigma_xyz, sigma_shear, sigma_direction)
         notes = (*notes, *bare)
         rounds = search(experiment, names, progress)
+        clean = cleaned(experiment, rounds[-1].closest)
+        if clean is not None:
+            experiment, rounds = clean, search(clean, names, progress, len(rounds))
         return conclude(experiment, rounds, notes)
 
 
-def search(experiment: Experiment, names: Sequence[str], progress: Progress) -> list[Round]:
-    """Rounds of the search: the first on the plain net, each further one on the model found before it."""
+def search(experiment: Experiment, names: Sequence[str], progress: Progress, passed: int = 0) -> list[Round]:
+    """Rounds of the search: the first on the plain net, each further one on the model found before it.
+
+    ``passed`` rounds have been told to ``progress`` before.
+    """
     whiten = white(experiment)
     base = fit_placement(experiment, whiten)
     rounds: list[Round] = []
     while True:
         left = [name for name in names if name not in base.model.effects]
-        told = _teller(progress, len(rounds), steps_of(left))
+        told = _teller(progress, passed + len(rounds), steps_of(left))
         rounds.append(try_effects(experiment, base, whiten, left, told))
         best = chosen(rounds)
         if best is None or len(rounds) == MOST_EFFECTS or locks(experiment, rounds[0]):
@@ -113,7 +117,8 @@ def white(experiment: Experiment) -> Callable[[np.ndarray], np.ndarray]:
 
 def _teller(progress: Progress, passed: int, count: int) -> Callable[[str], None]:
     told = iter(range(count))
-    return lambda name: progress((passed + next(told) / count) / (passed + 1.0), f"trying {name}")
+    # how many rounds there will be is not known: each takes half of what is left
+    return lambda name: progress(1.0 - 0.5**passed * (1.0 - 0.5 * next(told) / count), f"trying {name}")
 
 
 def chosen(rounds: Sequence[Round]) -> str | None:
@@ -128,6 +133,15 @@ def chosen(rounds: Sequence[Round]) -> str | None:
         if before.fit.chi2 - after.fit.chi2 < WORTH * first:
             return None
     return found[0]
+
+
+def found_by(rounds: Sequence[Round]) -> tuple[list[str], Fitted, Scatter]:
+    """Names of the effects that a search has found, the model with them, and its scatter."""
+    added = [chosen(rounds[: k + 1]) for k in range(len(rounds))]
+    names = [name for name in added if name is not None]
+    if names:
+        return names, *rounds[len(names) - 1].trial(names[-1])
+    return names, rounds[0].base, rounds[0].scatter[0]
 
 
 def leaves(first: Round, model: Fitted, share: float) -> bool:
@@ -149,11 +163,7 @@ def left_over(experiment: Experiment, model: Fitted, scatter: Scatter) -> Leftov
 
 def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, ...]) -> Diagnosis:
     """The verdict on a finished search."""
-    added = [chosen(rounds[: k + 1]) for k in range(len(rounds))]
-    names = [name for name in added if name is not None]
-    model, scatter = rounds[0].base, rounds[0].scatter[0]
-    if names:
-        model, scatter = rounds[len(names) - 1].trial(names[-1])
+    names, model, scatter = found_by(rounds)
     meant = experiment
     experiment, model = _final(meant, model, scatter)
     left = left_over(experiment, model, scatter)
@@ -187,7 +197,7 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         effects=tuple(model.model.built(model.values)),
         scatter=scatter,
         leftover=left,
-        outliers=_outliers(experiment, model),
+        outliers=outliers_of(experiment, model),
         hints=hints_for(experiment, rounds, verdict, candidates, model, left),
         notes=(*notes, *_coarser(meant, experiment, model), *_failures(experiment, rounds)),
     )
@@ -236,15 +246,6 @@ def _failures(experiment: Experiment, rounds: Sequence[Round]) -> tuple[str, ...
     bare = [f"{n} could not be tried: no net with it covers these points" for n in failed if n not in refused]
     said = {n: "could not be tried" if n in failed else "was refused at some values" for n in refused}
     return (*bare, *(f"{n} {what}: {refused[n]}" for n, what in said.items()))
-
-
-def _outliers(experiment: Experiment, model: Fitted) -> tuple[Outlier, ...]:
-    """Points that stand out from the final model; what stood out of a worse one may be no slip of the instrument."""
-    net = experiment.draped(model.model.built(model.values), experiment.pitches[1])
-    found = match(net, experiment.measurement)
-    n = len(experiment.measurement)
-    noise = [None if sigma is None else np.full(n, sigma) for sigma in experiment.noise_by_kind()[:2]]
-    return find_outliers(net, experiment.measurement, found, *noise)
 
 
 def _verdict(
@@ -301,7 +302,7 @@ def _confidence(verdict: str, rounds: Sequence[Round], names: Sequence[str], lef
         return 1.0 - min(left.p_value, 1.0)
     last = rounds[max(len(names) - 1, 0)]
     price = float(np.log(last.rows.sum()))
-    scores = {e.name: e.gain - e.unknowns * price for e in last.evidence}
-    own = scores.pop(names[-1]) if names else 0.0
+    scores = {e.name: e.gain - e.unknowns * price for e in last.evidence if not says_the_same(e, last.evidence)}
+    own = scores.pop(names[-1], 0.0) if names else 0.0
     rest = [*scores.values(), 0.0] if names else list(scores.values())
     return float(1.0 / (1.0 + sum(np.exp(min(0.5 * (s - own), 50.0)) for s in rest)))

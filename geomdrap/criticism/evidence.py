@@ -100,4 +100,10 @@ def alike_in_what_they_leave(evidence: Sequence[Evidence]) -> tuple[str, ...]:
     word, tells effects apart by what the models lack.
     """
     found = sorted((e for e in evidence if e.found and e.share >= MOST), key=lambda e: -e.share)
-    return tuple(e.name for e in found if 1.0 - e.share <= AS_MUCH * (1.0 - found[0].share))
+    near = [e for e in found if 1.0 - e.share <= AS_MUCH * (1.0 - found[0].share)]
+    return tuple(e.name for e in near if not says_the_same(e, near))
+
+
+def says_the_same(one: Evidence, others: Sequence[Evidence]) -> bool:
+    """Whether an effect comes to one of others at small values, and does no better or has such values."""
+    return any(other.name in one.includes and (other.gain >= one.gain or not one.in_range) for other in others)

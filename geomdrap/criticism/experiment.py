@@ -163,6 +163,12 @@ class Experiment:
         """The same experiment with the net for what is costly twice as fine, but no finer than the other one."""
         return replace(self, pitches=(self.pitches[0], max(0.5 * self.pitches[1], self.pitches[0])), coarseness={})
 
+    def without(self, drop: np.ndarray) -> Experiment:
+        """The same experiment without the values ``drop`` (n, c) bool."""
+        kept = ~flatten(drop, self.mask)
+        values = {"noise": self.noise[kept], "measured": self.measured[kept]}
+        return replace(self, mask=self.mask & ~drop, coarseness={}, **values)
+
     def unsmoothed(self) -> Experiment:
         """The same experiment with nets on the facets themselves, not on the smooth tool that they stand for."""
         names = ("surfaces", "coarseness", "costly", "last", "refused")

@@ -53,7 +53,8 @@ def fit(
 
     ``predict`` gives (m,) values, NaN where it has none; those count as if they had kept their last residual.
     ``steps`` (p,) are the differences with which slopes are taken, where ``slopes`` (m, p) are not given. At
-    most ``most`` steps are tried; a fit that is above a chi-square of ``enough`` after ``FIRST_STEPS`` is given up.
+    most ``most`` steps are tried; a fit that is above a chi-square of ``enough`` ``FIRST_STEPS`` after the start, or
+    after slopes were taken anew, is given up.
     ``sloped`` is what slopes are taken from: a cheaper prediction that changes alike; None for ``predict`` itself.
     """
     values = np.clip(np.asarray(start, dtype=float), low, high)
@@ -68,8 +69,9 @@ def fit(
     chi2 = _square(whiten(filled))
     damping = 0.0
     fresh = slopes is None
+    first = FIRST_STEPS
     for tried in range(most):
-        if tried >= FIRST_STEPS and chi2 > enough:
+        if tried >= first and chi2 > enough:
             break
         seen = whiten(jacobian)
         # as a locking angle that no shear reaches: its slope is rounding, and would send it to the end of its range
@@ -95,7 +97,7 @@ def fit(
                 break
         elif not fresh:  # the slopes are worn: take them anew, once for each place
             jacobian[:, free] = take_slopes(rough, values, rough(values), steps, low, high, free)[:, free]
-            fresh = True
+            fresh, first = True, max(first, tried + 1 + FIRST_STEPS)
         elif foreseen < RAGGED:
             break
         else:

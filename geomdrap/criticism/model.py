@@ -28,7 +28,7 @@ PLACED = 3  # parameters of the placement, before all others
 REFINEMENTS = 5  # steps on a finer net
 FEW_STEPS, MORE_STEPS = 7, 18  # of a fit whose every drape is costly, and if it is the best so far
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
-NEARLY = 0.02  # of the misfit: a model that leaves less has explained nearly all of it
+NEARLY = 0.02  # of the misfit: a model that leaves less, and little beside the noise, has explained nearly all of it
 HOPELESS = 0.5  # of the way from the best model back to the base
 FAR = 0.1  # the same, where the best model leaves next to nothing and a few values were probed
 
@@ -184,7 +184,7 @@ def add_effect(
     values = len(experiment.measured)
     explained = seen is not None and is_noise(least, values)
     # where much of the misfit is not explained one look is too little to give it up
-    nearly = explained or least - values < NEARLY * (base.fit.chi2 - values)
+    nearly = explained or least - values < min(NEARLY * (base.fit.chi2 - values), 2.0 * values)
     if seen is not None and (
         seen.gain < LEAST_GAIN or (nearly and _hopeless(whiten, base, seen.after, least, HOPELESS))
     ):

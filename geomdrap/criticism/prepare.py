@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.criticism.cleaned import POSITION, spoilt
 from geomdrap.criticism.experiment import CHANNELS, COARSE, FINE, Experiment, Layup, flatten, predicted
 from geomdrap.criticism.smooth import note_on
 from geomdrap.errors import MeasurementError
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
 FEWEST_PLACES = 6  # three values of the placement, up to two of an effect, and something to hold them against
 MOST_POINTS = 400  # with a dense covariance; more points are thinned out evenly
-POSITION = ("along", "across", "normal")
 OPTIONS = {"position": "--sigma-xyz", "shear": "--sigma-shear", "direction": "--sigma-direction"}
 UNITS = {"position": "mm", "shear": "deg", "direction": "deg"}
 NOT_POSITION = {"shear": "shear", "warp": "direction", "weft": "direction"}
@@ -79,9 +79,7 @@ def prepare(
     _require_places(measurement, at, mask)
     given = (sigma_xyz, sigma_shear, sigma_direction)
     sigma, more = _noise(measurement, channels, values, values - table, at, given)
-    for outlier in find_outliers(net, measurement, found, *_by_kind(channels, sigma)):
-        kind = [name in POSITION for name in channels]
-        mask[outlier.row] &= ~np.array(kind) if outlier.kind == "position" else np.array(kind)
+    mask &= ~spoilt(channels, mask.shape, find_outliers(net, measurement, found, *_by_kind(channels, sigma)))
     if not mask.any():
         raise MeasurementError(f"{measurement.source}: every point stands out from its neighbours; check the table")
     _require_places(measurement, at, mask)

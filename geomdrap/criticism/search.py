@@ -38,6 +38,11 @@ class Round:
     cv_base: float
     failed: tuple[str, ...]
 
+    @property
+    def closest(self) -> Fitted:
+        """The model with the least chi-square, whether it is believed or not."""
+        return min((self.base, *self.trials), key=lambda model: model.fit.chi2)
+
     def trial(self, effect: str) -> tuple[Fitted, Scatter]:
         """The trial of an effect and its scatter."""
         k = [t.model.effects[-1] for t in self.trials].index(effect)
@@ -54,13 +59,14 @@ def try_effects(
     for look in _looks(experiment, base, whiten, names, done):
         done(look.effect)
         trial = add_effect(experiment, whiten, base, look, least, turns)
-        if trial.fit.chi2 < least and make(look.effect).acts_at_once:
+        if not _predicts(trial):
+            failed.append(look.effect)
+            continue
+        trials.append(trial)
+        kind, noise = make(look.effect), len(trial.fit.residual)
+        if kind.costly and kind.acts_at_once and trial.fit.chi2 - noise < 0.5 * (least - noise):
             turns = (float(trial.values[TURN]),)  # where one net has turned to, another will have
         least = min(least, trial.fit.chi2)
-        if _predicts(trial):
-            trials.append(trial)
-        else:
-            failed.append(look.effect)
     models = [base, *trials]
     rows = np.all([np.isfinite(m.fit.residual) for m in models], axis=0)
     judge = judge_of(experiment, rows)
@@ -93,7 +99,7 @@ def _looks(
     for name in slow_ones:
         done(name)
         seen.append(look_at(experiment, whiten, likely, base, name))
-    yield from sorted(seen, key=lambda look: look.seen.after if look.seen else 0.0)
+    yield from sorted(seen, key=lambda look: look.seen.after)  # type: ignore[union-attr]
 
 
 def steps_of(names: Sequence[str]) -> int:
@@ -145,6 +151,8 @@ def _weigh(
     unknowns = [len(m.values) - len(base.values) + _shapes(m) for m in models[1:]]
     p_values = [chance(g, k) for g, k in zip(gains, unknowns, strict=True)]
     family = among_all(p_values)
+    known = {name for model in models for name in model.model.effects}
+    includes = [tuple(n for n in make(m.model.effects[-1]).includes if n in known) for m in models[1:]]
     misfit = max(squares[0] - floor, CLEAR * float(np.sqrt(2.0 * floor)))  # at least what noise may hide
     out = []
     for k, model in enumerate(models[1:]):
@@ -157,8 +165,8 @@ def _weigh(
                 p_family=float(family[k]),
                 share=min((squares[0] - squares[k + 1]) / misfit, 1.0),
                 cv_ratio=errors[k + 1] / errors[0],
-                in_range=_in_range(model, spreads[k]),
-                includes=make(model.model.effects[-1]).includes,
+                in_range=_in_range(model, spreads[k], includes[k]),
+                includes=includes[k],
             )
         )
     return tuple(out)
@@ -170,16 +178,17 @@ def _shapes(model: Fitted) -> int:
     return sum(1 for p, _ in own if p.neutral in (p.low, p.high))
 
 
-def _in_range(model: Fitted, sigma: np.ndarray) -> bool:
+def _in_range(model: Fitted, sigma: np.ndarray, includes: Sequence[str]) -> bool:
     """Whether the last effect certainly acts, and no value lies at a bound that is not its neutral one.
 
-    ``sigma`` (p,): standard deviations of the model's values.
+    ``sigma`` (p,): standard deviations of the model's values; ``includes``: effects tried, or in the base, that it
+    comes to at small values.
     """
     own = model.parameters_of(model.model.effects[-1])
     values = [(p, float(model.values[k])) for p, k in own]
     kind = make(model.model.effects[-1])
     at_bound = [v in (p.low, p.high) and v != p.neutral and not _natural(p, v) for p, v in values]
-    if kind.acts_at_once and not kind.includes:  # else its smallest values are another effect's doing
+    if kind.acts_at_once and not includes:  # else its smallest values are another effect's doing
         acts = any(v != p.neutral for p, v in values)
     else:
         acts = any(abs(v - p.neutral) > CLEAR * sigma[k] for (p, v), (_, k) in zip(values, own, strict=True))

@@ -44,9 +44,8 @@ LEAST_GAIN = 4.0  # of chi-square under the likely scatter: less is not looked i
 class Glance:
     """One look at an effect: the best of a few ``values`` of its parameters and their ``signature`` (m,).
 
-    ``gain`` is what any multiple of the signature explains under the likely scatter, of chi-square; ``after`` the
-    chi-square under the noise alone that it would leave. An effect that is costly is looked at from where the ply was
-    meant to lie, too.
+    ``gain`` is what any multiple of the signature explains under the likely scatter, of chi-square, or the effect
+    itself from where the ply was meant to lie; ``after`` the chi-square under the noise alone that would be left.
     """
 
     values: np.ndarray
@@ -63,7 +62,11 @@ def glance(
     base: Fitted,
     effect: str,
 ) -> Glance:
-    """Look at an effect once; ``likely`` whitens with the base's likeliest scatter, ``whiten`` with the noise."""
+    """Look at an effect at a few values.
+
+    ``likely`` whitens with the base's likeliest scatter, ``whiten`` with the noise. A costly effect is also looked at
+    from where the ply was meant to lie, if the base has gone astray from there.
+    """
     residual = np.nan_to_num(base.fit.residual)
     there = experiment.measured - base.fit.residual
     slopes = base.fit.slopes
@@ -75,9 +78,10 @@ def glance(
         signature = np.nan_to_num(predict(np.append(base.values, values)) - there)
         both = np.column_stack([slopes, signature])
         gain = before - square_beside(likely(residual), likely(both))
-        gain = gain if np.linalg.norm(whiten(signature)) > TOO_SMALL else 0.0
         after = square_beside(whiten(residual), whiten(both))
-        if astray:
+        if np.linalg.norm(whiten(signature)) <= TOO_SMALL:
+            gain = 0.0
+        elif astray:
             left = experiment.measured - predict(np.append(meant, values))
             left = np.where(np.isnan(left), residual, left)
             gain = max(gain, before - square_beside(likely(left), likely(slopes)))

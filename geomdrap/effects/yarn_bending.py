@@ -21,8 +21,8 @@ class YarnBending(Effect):
         "tows spread that over a transition layer as wide as length, the square root of bending stiffness over shear "
         "stiffness; since yarns hardly stretch, the net depends on little else. Yarns are straight at rest. A length "
         "beyond the radius of a part may straighten them by shearing the whole ply aslant; a locking angle given "
-        "as well stops that. The ratio is that of shear-stiffness where that is given; alone it is 0.001. At 0 the "
-        "net is not relaxed at all."
+        "as well stops that. Where a yarn crosses an edge of the part its turn does not count. The ratio is that of "
+        "shear-stiffness where that is given, else 0.001. At 0 the net is not relaxed at all."
     )
     source = "second gradient energy of woven fabrics: A. Madeo et al., arXiv 1604.04298 (2016)"
     stage = "fabric"

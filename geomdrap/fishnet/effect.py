@@ -30,7 +30,7 @@ class Effect:
     ``rank`` orders effects of one stage; ``costly`` says that a net with it takes many times as long as without;
     ``acts_at_once`` that the smallest values act as fully as others, so that ``diagnose`` finds it wherever it is not
     neutral, and does not ask that its values differ clearly from their neutral ones; ``includes`` names effects that
-    it comes to at small values, so that it must do better than these to be found beside them.
+    it comes to at small values: beside these it must do better, and with a value that is clearly not small.
     ``values`` are its parameters' values by name.
     Raises EffectError for parameters that it does not have, and values out of bounds.
     """

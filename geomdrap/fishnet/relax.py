@@ -88,8 +88,10 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
 
 def _energy(problem: Problem, x: np.ndarray, footing: Footing) -> float:
     rests, law = (problem.rest_u, problem.rest_v), problem.law
-    bent = bending_energy(x, problem.on_net(footing.normal), *rests, law.bend) if law.bend > 0.0 else 0.0
-    return float(energy(x, problem.valid, problem.target, *rests, law) + bent)
+    total = float(energy(x, problem.valid, problem.target, *rests, law))
+    if law.bend > 0.0:
+        total += float(bending_energy(x, problem.on_net(footing.normal), problem.smooth, *rests, law.bend))
+    return total
 
 
 def _searched(

@@ -1,9 +1,11 @@
-"""Energy of the bending of yarns in the surface, with its exact first and second derivatives.
+"""Energy of the bending of yarns in the surface, with its first and second derivatives.
 
 E = bend·Σ (s/c)² over the nodes inside a yarn. With a and b the unit chords before and after a node, and n the normal
 of the part there, s = n·(a × b) is the sine of the turn in the surface, left positive; c is the mean of the two rest
 lengths, so that E → bend·∫κ² ds/pitch with the geodesic curvature κ. Yarns are straight at rest. The normal turns as
-its node moves; on a sphere that is what lets neighbouring geodesics meet.
+its node moves; on a sphere that is what lets neighbouring geodesics meet. Derivatives are exact where the vertex
+normals of the part are those of a sphere or plane, else but for what facets change, which is of second order. Where a
+yarn crosses an edge no normal tells its turn in the surface: such nodes are left out.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ import math
 import numpy as np
 
 from geomdrap.fishnet.relax_energy import chords
+from geomdrap.fishnet.relax_surface import CREASE_COSINE
 from geomdrap.geodesic.compiled import kernel, tight
 
 
@@ -25,16 +28,34 @@ def put_turn_axis(line: np.ndarray, i: int, j: int, di: int, dj: int, axis: np.n
     axis[2] = line[k, m, 0] * line[i, j, 1] - line[k, m, 1] * line[i, j, 0]
 
 
+def smooth_bends(normal: np.ndarray) -> np.ndarray:
+    """Which nodes of warp and weft yarns (2, nu, nv) have no edge of the part next to them.
+
+    ``normal`` (nu, nv, 3) unit normals at the nodes, 0 where there is none.
+    """
+    smooth = np.zeros((2, *normal.shape[:2]), bool)
+    for family in range(2):
+        n = normal.swapaxes(0, family)
+        step = np.einsum("ijk,ijk->ij", n[1:], n[:-1]) >= CREASE_COSINE
+        smooth[family].swapaxes(0, family)[1:-1] = step[1:] & step[:-1]
+    return smooth
+
+
 @kernel
-def bending_energy(x: np.ndarray, normal: np.ndarray, rest_u: np.ndarray, rest_v: np.ndarray, bend: float) -> float:
-    """Energy of nodes x (nu, nv, 3) mm with unit normals (nu, nv, 3) of the part; rests as in ``energy``."""
+def bending_energy(
+    x: np.ndarray, normal: np.ndarray, smooth: np.ndarray, rest_u: np.ndarray, rest_v: np.ndarray, bend: float
+) -> float:
+    """Energy of nodes x (nu, nv, 3) mm with unit normals (nu, nv, 3) of the part; rests as in ``energy``.
+
+    ``smooth`` (2, nu, nv) bool: which nodes of warp and weft yarns count (``smooth_bends``).
+    """
     total, axis = 0.0, np.empty(3)
     for family in range(2):
         rest, di, dj = rest_u if family == 0 else rest_v, 1 - family, family
         line = chords(x, rest, di, dj)
         for i in range(di, rest.shape[0]):
             for j in range(dj, rest.shape[1]):
-                if rest[i, j] > 0.0 and rest[i - di, j - dj] > 0.0:
+                if smooth[family, i, j] and rest[i, j] > 0.0 and rest[i - di, j - dj] > 0.0:
                     put_turn_axis(line, i, j, di, dj, axis)
                     s = normal[i, j, 0] * axis[0] + normal[i, j, 1] * axis[1] + normal[i, j, 2] * axis[2]
                     total += (2.0 * s / (rest[i, j] + rest[i - di, j - dj])) ** 2
@@ -189,6 +210,7 @@ def add_bending(
     basis: np.ndarray,
     normal: np.ndarray,
     turning: np.ndarray,
+    smooth: np.ndarray,
     rest_u: np.ndarray,
     rest_v: np.ndarray,
     bend: float,
@@ -199,9 +221,9 @@ def add_bending(
 ) -> None:
     """Add what bending has to the ``derivatives``: to g (nu, nv, 3), h (nu, nv, 7, 2, 2) and size (nu, nv).
 
-    ``basis`` (nu, nv, 3, 2) tangent vectors, ``turning`` (nu, nv, 3, 3) per mm of the normals (``Footing``). The last
-    two blocks of h are with the nodes next but one (``dissection``). Where not ``full`` the second derivative is made
-    positive by leaving out that of the turns.
+    ``basis`` (nu, nv, 3, 2) tangent vectors, ``turning`` (nu, nv, 3, 3) per mm of the normals (``Footing``),
+    ``smooth`` (2, nu, nv) which nodes count. The last two blocks of h are with the nodes next but one
+    (``dissection``). Where not ``full`` the second derivative is made positive by leaving out that of the turns.
     """
     slope, axis, k = np.empty((3, 3)), np.empty(3), np.empty((6, 6))
     ones, others = np.empty((6, 14)), np.empty((6, 14))
@@ -210,7 +232,7 @@ def add_bending(
         line = chords(x, rest, di, dj)
         for i in range(di, rest.shape[0]):
             for j in range(dj, rest.shape[1]):
-                if rest[i, j] > 0.0 and rest[i - di, j - dj] > 0.0:
+                if smooth[family, i, j] and rest[i, j] > 0.0 and rest[i - di, j - dj] > 0.0:
                     put_turn_axis(line, i, j, di, dj, axis)
                     s = put_slopes(line, normal, turning, i, j, di, dj, axis, slope)
                     c = 0.5 * (rest[i, j] + rest[i - di, j - dj])

@@ -56,8 +56,8 @@ def equations_at(problem: Problem, x: np.ndarray, footing: Footing, full: bool) 
         h = np.concatenate((h, np.zeros((*h.shape[:2], 2, 2, 2))), axis=2)
         turning = np.zeros((*x.shape, 3))
         turning[problem.nodes] = footing.turning
-        rests = problem.rest_u, problem.rest_v
-        add_bending(x, basis, problem.on_net(footing.normal), turning, *rests, problem.law.bend, full, g, h, size)
+        part = problem.on_net(footing.normal), turning, problem.smooth
+        add_bending(x, basis, *part, problem.rest_u, problem.rest_v, problem.law.bend, full, g, h, size)
     force, blocks = g[problem.nodes], h[problem.nodes]
     gradient = along_tangents(force, bases, footing.normal, footing.turning, blocks, full)
     for node, first in ((problem.fixed, 0), (problem.guided, 1)):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.errors import DrapeError
+from geomdrap.fishnet.relax_bending import smooth_bends
 from geomdrap.fishnet.relax_energy import Law
 from geomdrap.fishnet.relax_surface import smooth_normals, stand
 
@@ -29,7 +30,7 @@ class Problem:
 
     ``x0`` (nu, nv, 3) is the geometric net, ``nodes`` the places (i, j) of the n that move, ``number`` (nu, nv) of
     these, -1 for others; ``fixed`` node and ``guided`` node, which moves only in the plane through the seed across
-    ``side``, and where they are, ``held`` (2, 3) mm.
+    ``side``, and where they are, ``held`` (2, 3) mm; ``smooth`` as of ``smooth_bends``.
     """
 
     surface: Surface
@@ -46,18 +47,24 @@ class Problem:
     guided: tuple[int, int]
     held: np.ndarray
     side: np.ndarray
+    smooth: np.ndarray
 
     def on_net(self, vectors: np.ndarray) -> np.ndarray:
         """Vectors (n, 3) of the nodes that move as (nu, nv, 3), 0 elsewhere."""
-        out = np.zeros(self.x0.shape)
-        out[self.nodes] = vectors
-        return out
+        return on_net(self.x0.shape, self.nodes, vectors)
+
+
+def on_net(shape: tuple[int, ...], nodes: tuple[np.ndarray, np.ndarray], vectors: np.ndarray) -> np.ndarray:
+    """Vectors (n, 3) of ``nodes`` on a net of that shape, 0 elsewhere."""
+    out = np.zeros(shape)
+    out[nodes] = vectors
+    return out
 
 
 def law_of(fabric: Fabric) -> Law:
     """The energy of a fabric; where only a locking angle is given, friction at the crossings resists below it."""
     angle, length = fabric.locking_angle, fabric.bending_length or 0.0
-    default = DEFAULT_RATIO if fabric.shear_asymmetry else BENT_RATIO if length else HELD
+    default = BENT_RATIO if length else DEFAULT_RATIO if fabric.shear_asymmetry else HELD
     ratio = fabric.shear_stiffness or default
     return Law(
         ratio=ratio,
@@ -99,7 +106,8 @@ def pose(net: Net, law: Law) -> Problem:
     surface = net.surface.lidded
     normals = smooth_normals(surface.triangles, surface.normals, surface.corner_angles, len(surface.points))
     x = np.full(lattice.shape, np.nan)
-    x[nodes] = stand(surface, normals, lattice[nodes]).lifted
+    footing = stand(surface, normals, lattice[nodes])
+    x[nodes] = footing.lifted
     rest_u, rest_v = (np.linalg.norm(np.diff(x, axis=axis), axis=2) for axis in (0, 1))
     return Problem(
         surface=surface,
@@ -116,6 +124,7 @@ def pose(net: Net, law: Law) -> Problem:
         guided=(beside[0], j),
         held=lattice[[i, beside[0]], j],
         side=np.cross(net.normal0, net.warp0),
+        smooth=smooth_bends(on_net(lattice.shape, nodes, footing.normal)),
     )
 
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from geomdrap.criticism.evidence import Evidence, alike_in_what_they_leave, among_all, chance, rivals
+from geomdrap.criticism.evidence import Evidence, alike_in_what_they_leave, among_all, chance, rivals, says_the_same
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.model import Fitted, Model
 from geomdrap.criticism.search import _in_range
@@ -43,6 +43,10 @@ def test_what_comes_to_the_best_at_small_values_and_does_no_better_is_no_rival()
     assert rivals([replace(wider, gain=GOOD.gain + 2.0), GOOD]) == ("wider", "slip")
     assert rivals([replace(wider, gain=GOOD.gain + 15.0), GOOD]) == ("wider", "slip")
     assert rivals([replace(wider, gain=GOOD.gain + 30.0), GOOD]) == ("wider",)
+    assert alike_in_what_they_leave([wider, GOOD]) == ("slip",)
+    assert says_the_same(wider, [wider, GOOD])
+    assert says_the_same(replace(wider, gain=GOOD.gain + 30.0, in_range=False), [GOOD])
+    assert not says_the_same(replace(wider, gain=GOOD.gain + 30.0), [GOOD])
 
 
 def test_those_close_to_the_best_are_its_rivals_and_others_are_not():
@@ -56,14 +60,25 @@ def test_of_two_with_the_same_gain_the_one_with_fewer_unknowns_comes_first():
     assert rivals([wide, GOOD])[0] == "slip"
 
 
-@pytest.mark.parametrize(("effect", "acts"), [("shear-stiffness", True), ("springback", False)])
-def test_only_what_acts_at_once_need_not_be_clearly_off_its_neutral_value(effect, acts):
+BESIDE = ("shear-stiffness",)
+
+
+@pytest.mark.parametrize(
+    ("effect", "includes", "acts"),
+    [
+        ("shear-stiffness", (), True),
+        ("springback", (), False),
+        ("yarn-bending", (), True),
+        ("yarn-bending", BESIDE, False),
+    ],
+)
+def test_only_what_acts_at_once_need_not_be_clearly_off_its_neutral_value(effect, includes, acts):
     model = Model((effect,))
     values = np.append(np.zeros(3), 1e-4)
     found = Fitted(model, Fit(values, np.zeros(1), np.zeros((1, 4)), 0.0))
-    assert _in_range(found, np.full(4, 1e-3)) == acts
-    assert _in_range(found, np.full(4, 1e-5))
-    assert not _in_range(replace(found, fit=replace(found.fit, values=model.neutral)), np.full(4, 1e-5))
+    assert _in_range(found, np.full(4, 1e-3), includes) == acts
+    assert _in_range(found, np.full(4, 1e-5), includes)
+    assert not _in_range(replace(found, fit=replace(found.fit, values=model.neutral)), np.full(4, 1e-5), includes)
 
 
 def test_effects_that_leave_as_little_as_the_best_are_alike_whatever_their_likelihood():

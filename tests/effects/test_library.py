@@ -50,6 +50,7 @@ def test_an_effect_says_what_it_is(name):
     assert effect.summary.endswith(".")
     assert effect.stage in ("surface", "placement", "fabric", "net")
     assert set(effect.confounded_with) <= set(NAMES)
+    assert set(effect.includes) <= set(NAMES)
     assert effect.acts_at_once == (name in ("shear-stiffness", "yarn-bending"))
     for p in effect.parameters:
         assert p.low <= p.neutral <= p.high

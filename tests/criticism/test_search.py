@@ -1,0 +1,102 @@
+"""The search: where effects are looked at, in which order they are tried, and what is left out of a second search."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from geomdrap.criticism import search
+from geomdrap.criticism.cleaned import cleaned, spoilt
+from geomdrap.criticism.diagnose import _teller
+from geomdrap.criticism.experiment import Experiment
+from geomdrap.criticism.fit import Fit
+from geomdrap.criticism.model import Fitted, Look, Model
+from geomdrap.criticism.start import Glance, glance
+from geomdrap.measurement.outliers import Outlier
+
+POINTS = 60
+AT = np.random.default_rng(0).normal(size=(POINTS, 2))
+PLACES = np.column_stack([np.ones(POINTS), AT])  # what the three values of a placement do
+
+
+def whiten(a):
+    return a / 0.1
+
+
+def base_at(values, measured):
+    return Fitted(Model(()), Fit(np.array(values), measured - PLACES @ values, PLACES, 1e9))
+
+
+@pytest.mark.parametrize(("values", "seen"), [((0.0, 0.0, 10.0), True), ((0.0, 0.0, 0.5), False)])
+def test_a_costly_effect_is_also_looked_at_from_where_the_ply_was_meant_to_lie(values, seen):
+    # the effect acts only on a ply that lies as it was meant to
+    shape = np.sin(5.0 * AT[:, 0])
+    measured = shape.copy()
+
+    def predict(v):
+        acts = v[3] / 0.003 * (np.abs(v[:3]).max() < 0.1)
+        return PLACES @ v[:3] + acts * shape + v[3] * AT[:, 1] ** 2
+
+    experiment = SimpleNamespace(measured=measured, top_shear=30.0)
+    looked = glance(experiment, predict, whiten, whiten, base_at(values, measured), "shear-stiffness")
+    assert (looked.after < 1.0) == seen
+
+
+def test_the_slow_effect_that_a_look_favours_is_tried_first(monkeypatch):
+    after = {"bridging": 50.0, "locking": 5.0, "shear-stiffness": 20.0}
+
+    def look_at(experiment, whiten, likely, base, name):
+        value = after.get(name)
+        return Look(name, Model((name,)), None, value and Glance(None, None, 9.0, value))
+
+    monkeypatch.setattr(search, "look_at", look_at)
+    monkeypatch.setattr(search, "_likely", lambda *_: whiten)
+    told = []
+    names = ("bridging", "slip", "locking", "shear-stiffness")
+    order = [look.effect for look in search._looks(None, None, whiten, names, told.append)]
+    assert order == ["slip", "locking", "shear-stiffness", "bridging"]
+    assert len(told) + len(order) == search.steps_of(names)
+
+
+def test_progress_never_goes_back_whatever_the_number_of_rounds():
+    shares = []
+    for passed in range(4):
+        tell = _teller(lambda share, _: shares.append(share), passed, 5)
+        for _ in range(5):
+            tell("x")
+    assert shares == sorted(shares)
+    assert 0.0 <= shares[0] < shares[-1] < 1.0
+
+
+def test_an_outlier_spoils_the_position_or_all_but_it():
+    channels = ("along", "normal", "shear", "warp")
+    drop = spoilt(channels, (3, 4), [Outlier(0, 2, "position", 1.0, 9.0), Outlier(2, 4, "shear", 9.0, 9.0)])
+    np.testing.assert_array_equal(drop, [[1, 1, 0, 0], [0, 0, 0, 0], [0, 0, 1, 1]])
+
+
+def test_an_experiment_without_some_values_keeps_the_others_in_order():
+    mask = np.array([[True, True], [True, False], [True, True]])
+    table = np.array([[1.0, 10.0], [2.0, np.nan], [3.0, 30.0]])
+    flat = table.T[mask.T]
+    whole = Experiment(None, None, None, AT, None, ("normal", "shear"), mask, 0.1 * flat, flat, (1.0, 2.0))
+    drop = np.array([[True, False], [False, False], [False, True]])
+    less = whole.without(drop & mask)
+    np.testing.assert_array_equal(less.measured, [2.0, 3.0, 10.0])
+    np.testing.assert_allclose(less.noise, [0.2, 0.3, 1.0])
+    assert less.mask.sum() == 3
+
+
+@pytest.mark.parametrize(("left", "taken"), [(0.1, True), (0.13, False)])
+def test_what_stands_out_is_taken_out_where_a_model_explains_all_else(monkeypatch, left, taken):
+    mask = np.ones((POINTS, 1), bool)
+    residual = np.full(POINTS, left)
+    residual[3] = 5.0
+    noise = np.full(POINTS, 0.1)
+    whole = Experiment(None, None, None, AT, None, ("shear",), mask, noise, np.zeros(POINTS), (1.0, 2.0))
+    model = Fitted(Model(()), Fit(np.zeros(3), residual, PLACES, 1e4))
+    monkeypatch.setattr("geomdrap.criticism.cleaned.outliers_of", lambda *_: [Outlier(3, 5, "shear", 5.0, 50.0)])
+    got = cleaned(whole, model)
+    assert (got is not None) == taken
+    if got is not None:
+        assert not got.mask[3, 0]
+        assert got.mask.sum() == POINTS - 1
