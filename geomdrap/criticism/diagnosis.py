@@ -40,7 +40,7 @@ class Tried:
     ``rms_position`` mm and ``rms_shear`` degrees, None where not measured; ``cv_error``: held out, over the noise.
     ``confounded_with`` lists effects whose signature on these points is nearly the same; ``visible`` holds for each
     parameter how far from its neutral value these data would show it, None where they would not. ``looked_at_only``:
-    one look promised too little for a fit, and the values are those at which it does nothing, with an infinite sigma.
+    a first look promised too little for a fit; the values are those at which it does nothing, sigma is infinite.
     """
 
     name: str

@@ -98,7 +98,7 @@ class Fitted:
 
     ``doubt`` (p,): standard deviations that the pitch of the net or the facets of the part add to the values; None
     where that was not measured.
-    ``looked_at_only``: the last effect was looked at once and promised too little for more.
+    ``looked_at_only``: the last effect was only looked at, and promised too little for more.
     """
 
     model: Model
@@ -149,7 +149,7 @@ def fit_placement(experiment: Experiment, whiten: Whiten) -> Fitted:
 
 
 def look_at(experiment: Experiment, whiten: Whiten, likely: Whiten, base: Fitted, effect: str) -> Look:
-    """Look at an effect on top of the base, once if its drapes take long.
+    """Look at an effect on top of the base, if its drapes take long.
 
     ``whiten`` divides by the noise; ``likely`` whitens with the likeliest scatter of the base.
     """

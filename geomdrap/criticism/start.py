@@ -1,7 +1,7 @@
 """Where a fit of a new effect begins: a few probes of it, weighed beside what the base model can move.
 
 A linear step from nothing does for effects that act in proportion; others have thresholds, one sign, or no slope at
-nothing, and are tried at some values first. What takes seconds a drape is looked at once before that: where neither
+nothing, and are tried at some values first. What takes seconds a drape is looked at before that: where neither
 the likely lay-up scatter leaves anything for it to explain, nor it could come near the best model known, it is done:
 it is not fitted, and a diagnosis says that it was looked at only.
 """
