@@ -261,16 +261,17 @@ def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted)
     Nets are of second order in the pitch: of what a pitch ``ratio`` times smaller changed in the values,
     1/(ratio² - 1) is left, a third where it was halved. Where no step was taken, nothing is known of it.
     """
-    model, found = old.model, old.fit
+    model = old.model
     fine, coarse = predictor(finer, model), predictor(coarser, model)
     low, high = model.bounds
     # how the heading of the first side turns the net depends on that side's length: the ply is placed anew first
     own = slice(PLACED, None)
     held = low.copy(), high.copy()
     held[0][own] = held[1][own] = old.values[own]
-    for bounds in (held, (low, high)):
-        way = found.values, model.steps, *bounds, found.slopes, REFINEMENTS
-        found = fit(fine, finer.measured, whiten, *way, sloped=coarse)
+    way = old.values, model.steps, *held, old.fit.slopes, REFINEMENTS
+    found = fit(fine, finer.measured, whiten, *way, sloped=coarse)
+    # where it has turned to, worn slopes hide how heading and stiffness make up for each other
+    found = fit(fine, finer.measured, whiten, found.values, model.steps, low, high, None, REFINEMENTS, sloped=coarse)
     ratio, moved = coarser.pitches[1] / finer.pitches[1], np.abs(found.values - old.values)
     return Fitted(model, found, moved / (ratio**2 - 1.0) if ratio > 1.0 and moved.any() else None)
 
