@@ -71,8 +71,9 @@ def _predicted(
     size = np.linalg.norm(normal, axis=1)
     known = np.isfinite(shear) & (size > 0.0)
     normal = normal / np.where(known, size, 1.0)[:, None]
-    why = reasons(net, u, v)
-    reason = tuple("" if k else text for k, text in zip(known.tolist(), why, strict=True))
+    why = np.full(len(known), "", object)
+    why[~known] = reasons(net, u[~known], v[~known])
+    reason = tuple(why.tolist())
     everything = Matched(u, v, point, shear, warp, weft, normal, reason)
     return _blanked(everything, np.where(known, 1.0, np.nan)[:, None], reason)
 
