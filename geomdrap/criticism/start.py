@@ -141,7 +141,8 @@ def start_values(
         values[k] = q.typical
         alone.append(signature(values))
     sizes = [float(np.abs(whiten(s)).max()) for s in alone]
-    acting = [k for k in range(len(own)) if sizes[k] > NOTHING]
+    # nets relaxed from other starts differ by rounding even where nothing acts
+    acting = [k for k, q in enumerate(own) if sizes[k] > NOTHING and q.typical != q.neutral]
     if len(acting) == len(own) and (len(own) > 1 or own[0].low < own[0].neutral < own[0].high):
         # both signs, a slope at nothing: the linear fit is the start
         slopes = np.column_stack([s / (q.typical - q.neutral) for s, q in zip(alone, own, strict=True)])

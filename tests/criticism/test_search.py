@@ -11,7 +11,7 @@ from geomdrap.criticism.diagnose import _teller
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.model import Fitted, Look, Model
-from geomdrap.criticism.start import Glance, glance
+from geomdrap.criticism.start import Glance, glance, start_values
 from geomdrap.measurement.outliers import Outlier
 
 POINTS = 60
@@ -40,6 +40,20 @@ def test_a_costly_effect_is_also_looked_at_from_where_the_ply_was_meant_to_lie(v
     experiment = SimpleNamespace(measured=measured, top_shear=30.0)
     looked = glance(experiment, predict, whiten, whiten, base_at(values, measured), "shear-stiffness")
     assert (looked.after < 1.0) == seen
+
+
+def test_rounding_is_no_action_of_a_parameter_that_is_neutral_where_it_is_typical():
+    # crossing-slip: alone the onset does nothing, and is as large as usual where it is neutral
+    shape, rounding = np.sin(5.0 * AT[:, 0]), np.random.default_rng(1).normal(size=POINTS)
+    measured = 0.3 * shape
+
+    def predict(v):
+        return PLACES @ v[:3] + v[3] * shape + 1e-4 * rounding
+
+    experiment = SimpleNamespace(measured=measured, top_shear=30.0)
+    start = start_values(experiment, predict, whiten, base_at((0.0, 0.0, 0.0), measured), "crossing-slip")
+    assert start[3] == pytest.approx(0.3, abs=0.01)
+    assert np.isfinite(start).all()
 
 
 def test_the_slow_effect_that_a_look_favours_is_tried_first(monkeypatch):
