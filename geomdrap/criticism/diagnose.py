@@ -302,7 +302,8 @@ def _confidence(verdict: str, rounds: Sequence[Round], names: Sequence[str], lef
         return 1.0 - min(left.p_value, 1.0)
     last = rounds[max(len(names) - 1, 0)]
     price = float(np.log(last.rows.sum()))
-    scores = {e.name: e.gain - e.unknowns * price for e in last.evidence if not says_the_same(e, last.evidence)}
-    own = scores.pop(names[-1], 0.0) if names else 0.0
+    others = [e for e in last.evidence if e.name in names or not says_the_same(e, last.evidence)]
+    scores = {e.name: e.gain - e.unknowns * price for e in others}
+    own = scores.pop(names[-1]) if names else 0.0
     rest = [*scores.values(), 0.0] if names else list(scores.values())
     return float(1.0 / (1.0 + sum(np.exp(min(0.5 * (s - own), 50.0)) for s in rest)))
