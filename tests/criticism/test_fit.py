@@ -147,3 +147,15 @@ def test_a_fit_that_stays_far_above_what_is_asked_is_given_up():
     far = y + 10.0  # nothing of the kind fits
     assert count(far, 1e3) < count(far, np.inf)
     assert count(y, 1e3) == count(y, np.inf)
+
+
+def test_a_step_goes_no_further_than_a_hundred_times_a_parameters_own():
+    asked = []
+
+    def predict(p):
+        asked.append(p.copy())
+        return np.array([p[0], 1e-3 * p[1]])
+
+    fit(predict, np.array([50.0, 50.0]), lambda a: a / 1e-3, np.zeros(2), STEPS, *WIDE)
+    assert np.abs(np.diff(asked, axis=0)).max() <= 100.0 * STEPS[0] + 2.0 * STEPS[0]
+    assert np.abs(asked).max() > 1.0
