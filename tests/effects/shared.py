@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import geomdrap as gd
+from geomdrap.fishnet.relax import relax
 
 ABOVE = Path(__file__).resolve().parents[3:]  # folders that may hold shared/ beside the checkout
 
@@ -19,6 +20,18 @@ def drape(surface, *effects, origin=(0.0, 0.0, 0.0), angle=0.0, pitch=5.0, **mor
     """A net with effects written as on the command line; a name alone is the effect at its neutral values."""
     acting = [gd.effects.parse(e) if ":" in e else gd.effects.make(e) for e in effects]
     return gd.drape(surface, origin, angle, pitch, effects=acting, project=True, **more)
+
+
+def assert_the_same_from_another_start(net, problem, within, of_energy):
+    """A net moves, and comes to rest ``within`` as many mm from the geometric net and from one that was shaken."""
+    one = relax(problem, net.lattice)
+    noise = 0.03 * net.pitch * np.random.default_rng(1).normal(size=net.lattice.shape)
+    other = relax(problem, net.lattice + noise)
+    assert max(one.unrest, other.unrest) < 1e-6
+    moves = problem.number >= 0
+    assert abs(one.x - problem.x0)[moves].max() > 0.3
+    assert abs(one.x - other.x)[moves].max() < within
+    assert one.energy == pytest.approx(other.energy, rel=of_energy)
 
 
 def grid_of(net):
