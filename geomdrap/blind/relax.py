@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geomdrap.blind.energy import HELD, KEPT, Block, Topology, blocks, sines, strains, topology
 from geomdrap.blind.recipe import Recipe
@@ -18,21 +19,36 @@ from geomdrap.errors import GeomdrapError
 STEPS = 300
 SMALL_STEP = 1e-6  # of a side
 SETTLED = 1e-9  # of the energy, the least share worth another step: softly held nets still turn at 1e-6
+NO_CELL = "the seed of the blind part has no cell beside it along the warp; put it further from the edge"
 DAMPED = 1e-2  # damping above which a small gain says nothing
 
 
 def relaxed(sheet: Sheet, plan: Array, recipe: Recipe, side: float) -> Array:
     """Give the plan points (n, n, 2) of least energy, from the geometric net ``plan``.
 
-    NoMinimumError if no minimum is found in STEPS steps.
+    Nodes of no whole cell are left out: nothing holds one that hangs on a single yarn. NoMinimumError if no minimum
+    is found in STEPS steps.
     """
+    plan = np.where(_in_cells(np.isfinite(plan[..., 0]))[..., None], plan, np.nan)
     known = np.isfinite(plan[..., 0])
+    if not known[plan.shape[0] // 2, plan.shape[0] // 2]:
+        raise GeomdrapError(NO_CELL)
     net = topology(known)
     seed = int(np.cumsum(known)[np.ravel_multi_index((plan.shape[0] // 2,) * 2, known.shape)]) - 1
     problem = _Problem(sheet, net, recipe, side, plan[known], seed)
     moved = plan.copy()
     moved[known] = _minimum(problem, plan[known])
     return moved
+
+
+def _in_cells(known: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which nodes (n, n) belong to a cell whose four nodes are ``known``."""
+    corners = np.s_[:-1, :-1], np.s_[1:, :-1], np.s_[1:, 1:], np.s_[:-1, 1:]
+    whole = np.logical_and.reduce([known[corner] for corner in corners])
+    kept = np.zeros_like(known)
+    for corner in corners:
+        kept[corner] |= whole
+    return kept
 
 
 class NoMinimumError(GeomdrapError):
@@ -59,7 +75,7 @@ class _Problem:
         net = self.net
         warp = net.sides[(net.along == 0) & (net.sides[:, 0] == self.seed)]
         if len(warp) == 0:
-            raise GeomdrapError("the seed of the blind part has no warp side; put it further from the edge")
+            raise GeomdrapError(NO_CELL)
         return int(warp[0, 1])
 
     def energy(self, xy: Array) -> float:
