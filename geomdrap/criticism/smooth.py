@@ -109,7 +109,7 @@ def _lifts(surface: Surface) -> np.ndarray:
 
     Facets that meet in an edge of more than 30° share no normal there: flats stay flat up to it.
     """
-    normals = smooth_normals(surface.triangles, surface.normals, surface.corner_angles, len(surface.points))
+    normals = smooth_normals(surface)
     corners = surface.points[surface.triangles]
     chords = np.roll(corners, -1, axis=1) - corners
     ends = np.roll(normals, -1, axis=1)

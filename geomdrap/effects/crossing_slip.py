@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -57,9 +56,9 @@ class CrossingSlip(Effect):
         relief = np.sin(np.radians(left)) * np.sign(shear) - np.sin(np.radians(shear))
         target = chord_sines(problem.x0, problem.valid) + relief[..., None, None]
         problem = replace(problem, target=np.where(problem.valid[..., None, None], target, 0.0))
-        x = net.lattice
+        start = problem.footing
         for stiffness in WHOLE_YARN:
             problem = replace(problem, law=problem.law._replace(yarn=stiffness))
-            found = relax(problem, x)
-            x = np.where(np.isfinite(net.lattice), found.x, math.nan)
+            found = relax(problem, start)
+            start = found.footing
         return as_net(net, problem, found)

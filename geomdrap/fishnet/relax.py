@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from geomdrap.fishnet.relax_equations import Equations, equations_at, newton_ste
 from geomdrap.fishnet.relax_surface import Footing, stand
 
 if TYPE_CHECKING:
+    from geomdrap.fishnet.dissection import Fronts
     from geomdrap.fishnet.relax_problem import Problem
 
 BALANCED = 1e-6  # of the largest forces at a node: what may be left of them
@@ -33,6 +34,15 @@ CLOSE = 0.1  # unrest below which second derivatives are taken in full
 PATIENCE = 3  # rounds in which the unrest may fail to halve near the end
 IDLE = 8  # rounds in which the unrest may fail to halve and the energy to fall by more than facets leave to chance
 ROUNDS = 80
+WARY = 5  # rounds without trust after it was in vain
+
+
+class Place(NamedTuple):
+    """Nodes ``x`` (nu, nv, 3) mm, the ``footing`` of the n that move, and their ``energy``."""
+
+    x: np.ndarray
+    footing: Footing
+    energy: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,18 +60,22 @@ class Relaxed:
     rounds: int
 
 
-def relax(problem: Problem, start: np.ndarray) -> Relaxed:
-    """Nodes of least energy, from ``start`` (nu, nv, 3) mm."""
-    moves = problem.number >= 0
-    x = np.where(moves[..., None], start, 0.0)
+def placed(problem: Problem, nodes: np.ndarray) -> Footing:
+    """Where nodes (nu, nv, 3) mm stand from which a net is to be relaxed; what is held stands where it is held."""
+    x = nodes.copy()
     for node, place in zip((problem.fixed, problem.guided), problem.held, strict=True):
         x[node] = place
-    footing = stand(problem.surface, problem.corner_normals, x[problem.nodes])
-    x[problem.nodes] = footing.lifted
+    return stand(problem.surface, x[problem.nodes])
+
+
+def relax(problem: Problem, footing: Footing) -> Relaxed:
+    """Nodes of least energy, from where they stand: ``problem.footing`` is the geometric net."""
+    x = problem.on_net(footing.lifted)
     now, damping, stuck = _energy(problem, x, footing), 0.0, 0
     law = problem.law
     fronts = dissect(problem.number, len(footing.face), law.yarn > 0.0, 2 if law.bend > 0.0 else 1)
     full = False  # far from the end second derivatives need not be positive
+    wary = 0  # the round from which on a step that raises the energy is trusted
     best = mark = Relaxed(x, footing, now, math.inf, 0)
     for n in range(ROUNDS):
         equations = equations_at(problem, x, footing, full)
@@ -74,13 +88,18 @@ def relax(problem: Problem, start: np.ndarray) -> Relaxed:
             break
         step = newton_step(problem, fronts, equations, damping)
         downhill = float((equations.gradient * step).sum()) < 0.0  # a BLAS product would wake threads that only spin
-        moved = _searched(problem, x, footing, equations, step, now) if downhill else None
+        moved = None
+        if downhill or damping == 0.0:  # near a ridge of the energy Newton's step leads up to it: away from it, then
+            way, place = step if downhill else -step, Place(x, footing, now)
+            moved = _searched(problem, fronts, place, equations, way, damping, n >= wary)
+            moved = moved if downhill or (moved is not None and moved[0].energy < now) else None
         if moved is None and damping > MOST_DAMPING:
             break
         if moved is None:
             damping, full = max(30.0 * damping, LEAST_DAMPING), False
             continue
-        x, footing, now, whole = moved
+        (x, footing, now), whole, in_vain = moved
+        wary = n + 1 + WARY if in_vain else wary
         damping = 0.0 if damping <= LEAST_DAMPING else 0.03 * damping if whole else damping
         full = damping == 0.0 and equations.unrest < CLOSE
     return best
@@ -95,12 +114,21 @@ def _energy(problem: Problem, x: np.ndarray, footing: Footing) -> float:
 
 
 def _searched(
-    problem: Problem, x: np.ndarray, footing: Footing, equations: Equations, step: np.ndarray, now: float
-) -> tuple[np.ndarray, Footing, float, bool] | None:
-    """Nodes after the longest of a few shares of the step that lowers the energy, and whether it is all of it.
+    problem: Problem,
+    fronts: Fronts,
+    place: Place,
+    equations: Equations,
+    step: np.ndarray,
+    damping: float,
+    trust: bool,
+) -> tuple[Place, bool, bool] | None:
+    """Where the longest of a few shares of the step leads that lowers the energy, and whether it is all of it.
 
     Facets leave the energy a little uneven: near the end, or where the step promises less than that, its slope is
     followed to where it vanishes, and it may rise by a share of ``UNEVEN``.
+    A net turns about its seed along circles: a step that is straight stretches it, and the next one takes that back.
+    So with ``trust`` a step that raises the energy is followed by another one from where it leads; the last value
+    tells that both did in vain.
     """
     way = (equations.bases * step.reshape(-1, 1, 2)).sum(axis=2)
     longest = float(np.linalg.norm(way, axis=1).max())
@@ -109,13 +137,28 @@ def _searched(
     share = min(1.0, LONGEST_STEP * float(problem.rest_u.max()) / max(longest, 1e-300))
     whole = share == 1.0
     gain = -0.5 * float((equations.gradient * step).sum())
+    in_vain = False
     for _ in range(4):
-        moved = stand(problem.surface, problem.corner_normals, footing.point + share * way, footing)
-        y = x.copy()
-        y[problem.nodes] = moved.lifted
-        then = _energy(problem, y, moved)
-        near = whole and (equations.unrest < GOOD_ENOUGH or gain < UNEVEN * now)
-        if then <= now * (1.0 + (UNEVEN if near else ROUNDING)):
-            return y, moved, then, whole
+        there = _moved(problem, place, share * way)
+        near = whole and (equations.unrest < GOOD_ENOUGH or gain < UNEVEN * place.energy)
+        if there.energy <= place.energy * (1.0 + (UNEVEN if near else ROUNDING)):
+            return there, whole, in_vain
+        if trust and not in_vain:
+            then = equations_at(problem, there.x, there.footing, False)
+            second = newton_step(problem, fronts, then, damping)
+            back = (then.bases * second.reshape(-1, 1, 2)).sum(axis=2)
+            if np.linalg.norm(back, axis=1).max() < LONGEST_STEP * float(problem.rest_u.max()):
+                both = _moved(problem, there, back)
+                if both.energy < place.energy:
+                    return both, whole, False
+            in_vain = True
         share, whole = 0.25 * share, False
     return None
+
+
+def _moved(problem: Problem, place: Place, way: np.ndarray) -> Place:
+    """Where steps (n, 3) mm along tangents of the part lead."""
+    footing = stand(problem.surface, place.footing.point + way, place.footing)
+    x = place.x.copy()
+    x[problem.nodes] = footing.lifted
+    return Place(x, footing, _energy(problem, x, footing))

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.errors import DrapeError
 from geomdrap.fishnet.grid import Status
 from geomdrap.fishnet.net import cells_of
-from geomdrap.fishnet.relax import GOOD_ENOUGH, relax
+from geomdrap.fishnet.relax import GOOD_ENOUGH, placed, relax
 from geomdrap.fishnet.relax_problem import CORNERS, chord_sines, problem_of
 
 UNREST = "has not come to rest"  # of the warning that says so
@@ -26,41 +26,57 @@ if TYPE_CHECKING:
 def relaxed(net: Net, near: Net | None = None) -> Net:
     """The net of least energy of ``net.fabric``, from the geometric net or from where a net much like it lies.
 
-    A warning of the net says so where the forces do not come into balance.
+    A coarser one is refined: what holds its heading, its first warp piece, holds that of the finer net, too, which
+    would turn on a shorter piece. A warning of the net says so where the forces do not come into balance.
     """
-    problem = problem_of(net)
-    return as_net(net, problem, relax(problem, net.lattice if near is None else laid_on(net, near)))
+    finer = 1 if near is None else max(round(near.pitch / net.pitch), 1)
+    problem = problem_of(net, finer)
+    start = problem.footing if near is None else placed(problem, laid_on(net, near))
+    return as_net(net, problem, relax(problem, start))
 
 
 def laid_on(net: Net, near: Net) -> np.ndarray:
-    """Nodes (nu, nv, 3) mm of a net, moved to where those of a net ``near`` of the same pitch lie.
+    """Nodes (nu, nv, 3) mm of a net, moved to where those of a net ``near`` lie, between its nodes by cubics.
 
-    Nodes that the other net has not go the way of the nearest that it has. Raises DrapeError for another pitch.
+    Nodes that the other net has not go with it as a whole, and from there the way of the nearest that it has.
     """
     from scipy.ndimage import distance_transform_edt
 
-    if not math.isclose(net.pitch, near.pitch):
-        raise DrapeError(
-            f"a net with a pitch of {net.pitch:g} mm cannot be relaxed from one with {near.pitch:g} mm; "
-            "give one of the same pitch, or none"
-        )
-
-    other = np.full(net.lattice.shape, np.nan)
-    (i, k), (j, m) = (_same(line, there) for line, there in ((net.u, near.u), (net.v, near.v)))
-    other[np.ix_(i, j)] = near.lattice[np.ix_(k, m)]
-    way = other - net.lattice
-    known = np.isfinite(way).all(axis=2)
+    across = _between(near.lattice.swapaxes(0, 1), net.v, near.v).swapaxes(0, 1)
+    other = _between(across, net.u, near.u)
+    known = np.isfinite(other - net.lattice).all(axis=2)
     if not known.any():
         return net.lattice
+    turned = _turned(net.lattice, net.lattice[known], other[known])
     rows, columns = distance_transform_edt(~known, return_distances=False, return_indices=True)
-    return np.asarray(net.lattice + way[rows, columns])
+    return np.asarray(turned + (other - turned)[rows, columns])
 
 
-def _same(line: np.ndarray, there: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Numbers of the yarns of two lines (n,), (m,) mm that lie at the same distance from the seed."""
-    one, other = (np.round(x / abs(line[1] - line[0])).astype(int) for x in (line, there))
-    _, i, k = np.intersect1d(one, other, return_indices=True)
-    return i, k
+def _turned(points: np.ndarray, some: np.ndarray, there: np.ndarray) -> np.ndarray:
+    """Points (..., 3) moved as a rigid body, as ``some`` (n, 3) of them best come to lie ``there`` (n, 3)."""
+    from scipy.spatial.transform import Rotation
+
+    middle, other = some.mean(axis=0), there.mean(axis=0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # of points on a line, for which many turns are as good
+        turn, _ = Rotation.align_vectors(there - other, some - middle)
+    return np.asarray(other + (points - middle) @ turn.as_matrix().T)
+
+
+def _between(values: np.ndarray, line: np.ndarray, there: np.ndarray) -> np.ndarray:
+    """Values (m, ...) at the yarns ``there`` (m,) mm carried over to a ``line`` (n,) mm: by cubics, else straight.
+
+    They are not numbers beyond the ends.
+    """
+    place = np.round((line - there[0]) / (there[1] - there[0]), 6)
+    inside = (place >= 0.0) & (place <= len(there) - 1)
+    before = np.floor(np.where(inside, place, 0.0)).astype(int)
+    w = np.where(inside, place - before, math.nan).reshape(-1, *[1] * (values.ndim - 1))
+    padded = np.pad(values, [(1, 2), *[(0, 0)] * (values.ndim - 1)], constant_values=math.nan)
+    a, b, c, d = (padded[before + k] for k in range(4))
+    straight = (1.0 - w) * b + w * c
+    bent = straight - w * (1.0 - w) / 6.0 * ((2.0 - w) * (a - 2.0 * b + c) + (1.0 + w) * (b - 2.0 * c + d))
+    return np.where(w == 0.0, b, np.where(np.isfinite(bent), bent, straight))
 
 
 def as_net(net: Net, problem: Problem, found: Relaxed) -> Net:

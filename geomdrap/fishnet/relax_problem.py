@@ -11,7 +11,7 @@ import numpy as np
 from geomdrap.errors import DrapeError
 from geomdrap.fishnet.relax_bending import smooth_bends
 from geomdrap.fishnet.relax_energy import Law
-from geomdrap.fishnet.relax_surface import smooth_normals, stand
+from geomdrap.fishnet.relax_surface import Footing, stand
 
 if TYPE_CHECKING:
     from geomdrap.fishnet.fabric import Fabric
@@ -30,11 +30,11 @@ class Problem:
 
     ``x0`` (nu, nv, 3) is the geometric net, ``nodes`` the places (i, j) of the n that move, ``number`` (nu, nv) of
     these, -1 for others; ``fixed`` node and ``guided`` node, which moves only in the plane through the seed across
-    ``side``, and where they are, ``held`` (2, 3) mm; ``smooth`` as of ``smooth_bends``.
+    ``side``, and where they are, ``held`` (2, 3) mm; ``smooth`` as of ``smooth_bends``; ``footing`` of the n in the
+    geometric net.
     """
 
     surface: Surface
-    corner_normals: np.ndarray
     valid: np.ndarray
     target: np.ndarray
     x0: np.ndarray
@@ -48,6 +48,7 @@ class Problem:
     held: np.ndarray
     side: np.ndarray
     smooth: np.ndarray
+    footing: Footing
 
     def on_net(self, vectors: np.ndarray) -> np.ndarray:
         """Vectors (n, 3) of the nodes that move as (nu, nv, 3), 0 elsewhere."""
@@ -75,17 +76,20 @@ def law_of(fabric: Fabric) -> Law:
     )
 
 
-def problem_of(net: Net) -> Problem:
-    """The problem of relaxing a net of its fabric. Raises DrapeError where the seed has no cell beside it."""
-    problem = pose(net, law_of(net.fabric))
+def problem_of(net: Net, pieces: int = 1) -> Problem:
+    """The problem of relaxing a net of its fabric, ``pieces`` and errors as of ``pose``."""
+    problem = pose(net, law_of(net.fabric), pieces)
     if net.fabric.shear_stiffness or net.fabric.shear_asymmetry or net.fabric.bending_length:
         return problem
     # without a stiffness in shear many nets are minimal, and yarns under pressure buckle from node to node
     return replace(problem, target=chord_sines(problem.x0, problem.valid))
 
 
-def pose(net: Net, law: Law) -> Problem:
-    """The problem of relaxing a net under a law. Raises DrapeError where the seed has no cell beside it."""
+def pose(net: Net, law: Law, pieces: int = 1) -> Problem:
+    """The problem of relaxing a net under a law, its heading held over so many ``pieces`` of the warp.
+
+    Over fewer where there are fewer. Raises DrapeError where the seed has no cell beside it.
+    """
     lattice, valid = net.lattice, net.lattice_valid
     moves = np.zeros(net.face.shape, bool)
     for corner in (np.s_[:-1, :-1], np.s_[1:, :-1], np.s_[1:, 1:], np.s_[:-1, 1:]):
@@ -96,22 +100,18 @@ def pose(net: Net, law: Law) -> Problem:
     weft[:-1] |= valid
     weft[1:] |= valid
     i, j = int(np.abs(net.u).argmin()), int(np.abs(net.v).argmin())
-    beside = [k for k in (i + 1, i - 1) if 0 <= k < len(net.u) and warp[min(i, k), j]]
-    if not beside:
-        raise DrapeError("the seed has no cell beside it from which a net could relax; move it away from the rim")
+    guided = _guided(warp[:, j], i, pieces)
     i_moves, j_moves = np.nonzero(moves)
     nodes = i_moves, j_moves
     number = np.full(moves.shape, -1)
     number[nodes] = np.arange(len(i_moves))
     surface = net.surface.lidded
-    normals = smooth_normals(surface.triangles, surface.normals, surface.corner_angles, len(surface.points))
     x = np.full(lattice.shape, np.nan)
-    footing = stand(surface, normals, lattice[nodes])
+    footing = stand(surface, lattice[nodes])
     x[nodes] = footing.lifted
     rest_u, rest_v = (np.linalg.norm(np.diff(x, axis=axis), axis=2) for axis in (0, 1))
     return Problem(
         surface=surface,
-        corner_normals=normals,
         valid=valid,
         target=np.zeros((*valid.shape, 2, 2)),
         x0=x,
@@ -121,11 +121,27 @@ def pose(net: Net, law: Law) -> Problem:
         nodes=nodes,
         number=number,
         fixed=(i, j),
-        guided=(beside[0], j),
-        held=lattice[[i, beside[0]], j],
+        guided=(guided, j),
+        held=lattice[[i, guided], j],
         side=np.cross(net.normal0, net.warp0),
         smooth=smooth_bends(on_net(lattice.shape, nodes, footing.normal)),
+        footing=footing,
     )
+
+
+def _guided(pieces: np.ndarray, seed: int, count: int) -> int:
+    """The node at the end of ``count`` pieces of the warp from the seed, forwards if there are as many as backwards.
+
+    ``pieces`` (nu - 1,) bool: which there are. Raises DrapeError for none beside the seed.
+    """
+    found = []
+    for step, first in ((1, seed), (-1, seed - 1)):
+        row = pieces[first:] if step > 0 else pieces[first::-1] if first >= 0 else pieces[:0]
+        found.append(step * int(np.logical_and.accumulate(row[:count]).sum()))
+    furthest = max(found, key=abs)
+    if furthest == 0:
+        raise DrapeError("the seed has no cell beside it from which a net could relax; move it away from the rim")
+    return seed + furthest
 
 
 CORNERS = np.s_[:-1, :-1], np.s_[:-1, 1:], np.s_[1:, :-1], np.s_[1:, 1:]  # (i, j), (i, j + 1), ... of each cell

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -24,14 +25,20 @@ if TYPE_CHECKING:
 
 CREASE_COSINE = math.cos(math.radians(30.0))
 ON_EDGE = 1e-9  # share of the third corner: a place where it has less is on the edge
+_MADE: WeakKeyDictionary[Surface, np.ndarray] = WeakKeyDictionary()
+
+
+def smooth_normals(surface: Surface) -> np.ndarray:
+    """Unit normals (m, 3, 3) at the corners of the facets: of those at the vertex that are no edge away."""
+    if surface not in _MADE:
+        mesh = surface.triangles, surface.normals, surface.corner_angles
+        _MADE[surface] = _smoothed(*mesh, len(surface.points))
+    return _MADE[surface]
 
 
 @kernel
-def smooth_normals(triangles: np.ndarray, normals: np.ndarray, angles: np.ndarray, n: int) -> np.ndarray:
-    """Unit normals (m, 3, 3) at the corners of the facets: the mean over those at the vertex that are no edge away.
-
-    ``angles`` (m, 3) radians, the weights.
-    """
+def _smoothed(triangles: np.ndarray, normals: np.ndarray, angles: np.ndarray, n: int) -> np.ndarray:
+    """Unit normals (m, 3, 3), weighted by the ``angles`` (m, 3) radians of the facets at the vertex."""
     start = np.zeros(n + 1, np.int64)
     for f in range(len(triangles)):
         for k in range(3):
@@ -76,11 +83,10 @@ class Footing(NamedTuple):
     outside: np.ndarray
 
 
-def stand(surface: Surface, corner_normals: np.ndarray, points: np.ndarray, last: Footing | None = None) -> Footing:
+def stand(surface: Surface, points: np.ndarray, last: Footing | None = None) -> Footing:
     """Nearest places of the surface; beyond its rim it goes on in its tangent planes there, without a step.
 
-    ``corner_normals`` (m, 3, 3) are its ``smooth_normals``. Nodes that have moved a little are looked for from where
-    they stood ``last``.
+    Nodes that have moved a little are looked for from where they stood ``last``.
     """
     if last is None:
         near = surface.nearest(points)
@@ -89,7 +95,7 @@ def stand(surface: Surface, corner_normals: np.ndarray, points: np.ndarray, last
         mesh = (surface.points, surface.triangles, surface.neighbours, surface.neighbour_edge)
         point, face = nearest_from(*mesh, points, last.face)
     part = (surface.points, surface.triangles, surface.neighbours, surface.normals, surface.areas, surface.on_rim)
-    return Footing(point, *footing(*part, corner_normals, points, point, face))
+    return Footing(point, *footing(*part, smooth_normals(surface), points, point, face))
 
 
 @kernel

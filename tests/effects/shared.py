@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import geomdrap as gd
-from geomdrap.fishnet.relax import relax
+from geomdrap.fishnet.relax import placed, relax
 
 ABOVE = Path(__file__).resolve().parents[3:]  # folders that may hold shared/ beside the checkout
 
@@ -24,9 +24,9 @@ def drape(surface, *effects, origin=(0.0, 0.0, 0.0), angle=0.0, pitch=5.0, **mor
 
 def assert_the_same_from_another_start(net, problem, within, of_energy):
     """A net moves, and comes to rest ``within`` as many mm from the geometric net and from one that was shaken."""
-    one = relax(problem, net.lattice)
+    one = relax(problem, problem.footing)
     noise = 0.03 * net.pitch * np.random.default_rng(1).normal(size=net.lattice.shape)
-    other = relax(problem, net.lattice + noise)
+    other = relax(problem, placed(problem, net.lattice + noise))
     assert max(one.unrest, other.unrest) < 1e-6
     moves = problem.number >= 0
     assert abs(one.x - problem.x0)[moves].max() > 0.3
