@@ -62,7 +62,8 @@ class Experiment:
     entries of ``mask``, channel by channel. ``refused``: why a drape with an effect could not be made at some of the
     values tried, by its name; ``warnings`` of the table. ``frames`` (n, 3, 3): along the warp, across it, and the
     normal. What is costly is kept: ``surfaces`` with effects on them and how their facets were split (``splits``),
-    the ``coarseness`` of nets, and the last ``costly`` nets.
+    the ``coarseness`` of nets, and the last ``costly`` nets. ``coarser``: the pitch, mm, of the nets which those for
+    what is costly refine, None where they are the first.
     """
 
     surface: Surface
@@ -83,6 +84,7 @@ class Experiment:
     splits: list[Split] = field(default_factory=list)
     last: dict[str, tuple[Sequence[Effect], Net | None]] = field(default_factory=dict)
     on_facets: bool = False
+    coarser: float | None = None
 
     def predict(self, effects: Sequence[Effect] = ()) -> np.ndarray:
         """The model's values (m,), NaN where it has none."""
@@ -120,6 +122,8 @@ class Experiment:
 
         Over a longer way it might be held back in another balance than the one that a drape finds.
         """
+        if self.coarser is not None and pitch == self.pitches[1]:
+            return self._draped(effects, pitch, self.draped(effects, self.coarser))
         acting = in_order(effects)
         names = f"{pitch!r} {'+'.join(e.name for e in acting)}"
         before, last = self.last.get(names, (acting, None))
@@ -161,7 +165,9 @@ class Experiment:
 
     def finer(self) -> Experiment:
         """The same experiment with the net for what is costly twice as fine, but no finer than the other one."""
-        return replace(self, pitches=(self.pitches[0], max(0.5 * self.pitches[1], self.pitches[0])), coarseness={})
+        first, pitch = self.pitches
+        half = max(0.5 * pitch, first)
+        return replace(self, pitches=(first, half), coarser=pitch if half < pitch else None, coarseness={})
 
     def without(self, drop: np.ndarray) -> Experiment:
         """The same experiment without the values ``drop`` (n, c) bool."""

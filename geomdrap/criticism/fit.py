@@ -87,6 +87,7 @@ def fit(
         new_chi2 = _square(whiten(new))
         # Broyden's correction: what the step really changed, less what the slopes foretold
         scaled = step / steps
+        before = jacobian
         jacobian = jacobian + np.outer((filled - new - jacobian @ step) / (scaled @ scaled), scaled / steps)
         gain = chi2 - new_chi2
         if gain > 0.0:
@@ -97,12 +98,14 @@ def fit(
                 break
         elif not fresh:  # the slopes are worn: take them anew, once for each place
             jacobian[:, free] = take_slopes(rough, values, rough(values), steps, low, high, free)[:, free]
-            fresh, first = True, max(first, tried + 1 + FIRST_STEPS)
+            fresh, first = True, min(max(first, tried + 1 + FIRST_STEPS), 2 * FIRST_STEPS)
         elif foreseen < RAGGED:
+            jacobian = before  # what a step beyond a threshold has shown is no slope here
             break
         else:
             damping = max(4.0 * damping, 0.3)
             if damping > 100.0:
+                jacobian = before
                 break
     return Fit(values, np.where(lost, np.nan, filled), jacobian, _square(whiten(np.where(lost, 0.0, filled))))
 

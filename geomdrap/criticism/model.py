@@ -26,7 +26,8 @@ STEP = 0.1  # of a parameter's typical size: the differences with which slopes a
 MOSTLY = 0.9  # of the values: a net that predicts fewer is not compared with another
 PLACED = 3  # parameters of the placement, before all others
 REFINEMENTS = 5  # steps on a finer net
-FEW_STEPS, MORE_STEPS = 7, 18  # of a fit whose every drape is costly, and if it is the best so far
+LEAST = 0.01  # of its typical size: the least value of what acts at once
+FEW_STEPS, MORE_STEPS = 7, 18  # of a fit whose every drape is costly, and then if it is the best
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
 NEARLY = 0.02  # of the misfit: a model that leaves less, and little beside the noise, has explained nearly all of it
 HOPELESS = 0.5  # of the way from the best model back to the base
@@ -61,8 +62,12 @@ class Model:
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Least and greatest values (p,)."""
-        return np.array([p.low for _, p in self.parameters]), np.array([p.high for _, p in self.parameters])
+        """Least and greatest values (p,); at the least ones of what acts at once it still acts."""
+        low = [
+            q.neutral + LEAST * (q.typical - q.neutral) if make(name).acts_at_once and q.low == q.neutral else q.low
+            for name, q in self.parameters
+        ]
+        return np.array(low), np.array([q.high for _, q in self.parameters])
 
     def built(self, values: np.ndarray) -> list[Effect]:
         """The effects with these values (p,)."""
@@ -209,11 +214,19 @@ def add_effect(
     # slopes may mislead a first step or two; what is still far off then stays so
     enough = least + far * (base.fit.chi2 - least) if seen is not None else math.inf
     found = fit(predict, experiment.measured, whiten, start, model.steps, low, high, slopes, most, enough)
-    if kind.costly and found.chi2 < least and not is_noise(found.chi2, len(found.residual)):
-        # the best so far, and still on its way: heading and stiffness make up for each other along a bent valley
-        way = found.values, model.steps, low, high, found.slopes, MORE_STEPS
-        found = fit(predict, experiment.measured, whiten, *way)
     return Fitted(model, found)
+
+
+def further(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
+    """A costly model fitted on, if it leaves more than noise.
+
+    It may still have been on its way: heading and stiffness make up for each other along a bent valley.
+    """
+    model = old.model
+    if not make(model.effects[-1]).costly or is_noise(old.fit.chi2, len(old.fit.residual)):
+        return old
+    way = old.values, model.steps, *model.bounds, old.fit.slopes, MORE_STEPS
+    return Fitted(model, fit(predictor(experiment, model), experiment.measured, whiten, *way))
 
 
 def _not_fitted(model: Model, base: Fitted, seen: Glance) -> Fitted:

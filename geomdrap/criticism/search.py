@@ -11,7 +11,7 @@ from geomdrap.criticism.evidence import Evidence, among_all, chance
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.holdout import blocks_of, held_out_error
 from geomdrap.criticism.likelihood import Judge, Residuals, Scatter, deviations
-from geomdrap.criticism.model import Fitted, Look, Whiten, add_effect, look_at, slow
+from geomdrap.criticism.model import Fitted, Look, Whiten, add_effect, further, look_at, slow
 from geomdrap.criticism.start import TURNS
 from geomdrap.effects import make
 
@@ -67,6 +67,9 @@ def try_effects(
         if kind.costly and kind.acts_at_once and trial.fit.chi2 - noise < 0.5 * (least - noise):
             turns = (float(trial.values[TURN]),)  # where one net has turned to, another will have
         least = min(least, trial.fit.chi2)
+    best = int(np.argmin([t.fit.chi2 for t in trials])) if trials else None
+    if best is not None:
+        trials[best] = further(experiment, whiten, trials[best])
     models = [base, *trials]
     rows = np.all([np.isfinite(m.fit.residual) for m in models], axis=0)
     judge = judge_of(experiment, rows)

@@ -72,7 +72,7 @@ def glance(
     slopes = base.fit.slopes
     before = square_beside(likely(residual), likely(slopes))
     meant = as_meant(base)
-    astray = bool((np.abs(meant - base.values)[:3] > ASTRAY).any()) and make(effect).costly
+    astray = is_astray(base) and make(effect).costly
     seen = []
     for values in _first_looks(make(effect).parameters, experiment.top_shear):
         signature = np.nan_to_num(predict(np.append(base.values, values)) - there)
@@ -88,6 +88,11 @@ def glance(
             after = min(after, square_beside(whiten(left), whiten(slopes)))
         seen.append(Glance(values, signature, gain, after))
     return max(seen, key=lambda one: one.gain)
+
+
+def is_astray(base: Fitted) -> bool:
+    """Whether a base lies elsewhere than the ply was meant to."""
+    return bool((np.abs(base.values[:3]) > ASTRAY).any())
 
 
 def as_meant(base: Fitted) -> np.ndarray:
@@ -147,8 +152,10 @@ def start_values(
         # both signs, a slope at nothing: the linear fit is the start
         slopes = np.column_stack([s / (q.typical - q.neutral) for s, q in zip(alone, own, strict=True)])
         step = np.linalg.lstsq(np.column_stack([shifts, whiten(slopes)]), whiten(residual), rcond=1e-9)[0]
-        values = _within(neutral + step[p:], own)
-        return np.append(base.values + step[:p], values)
+        straight = base.values + step[:p], _within(neutral + step[p:], own)
+        if seen is None or not is_astray(base):
+            return np.append(*straight)
+        return _best_start(experiment, predict, whiten, base, [straight, *_turned(base, seen.values, turns)])
 
     def misfit(values: np.ndarray) -> float:
         return square_beside(whiten(residual - signature(values)), shifts)
@@ -166,13 +173,19 @@ def start_values(
             (_scaled(shape, own, acting, signature, whiten, residual, shifts) for shape in _shapes(own, acting)),
             key=misfit,
         )
-    meant = as_meant(base)
-    starts = [(base.values, best), (meant, best)]
+    starts = [(base.values, best), (as_meant(base), best)]
     if make(effect).acts_at_once and not is_noise(base.fit.chi2, len(residual)):
-        # such a net turns as a whole about its seed, and the heading of its first side holds it but softly
-        typical = np.array([q.typical for q in own])
-        starts += [(np.array([0.0, 0.0, turn, *meant[3:]]), typical) for turn in turns]
+        starts += _turned(base, np.array([q.typical for q in own]), turns)
     return _best_start(experiment, predict, whiten, base, starts)
+
+
+def _turned(base: Fitted, values: np.ndarray, turns: Sequence[float]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The ply where it was meant to lie, turned by ``turns`` (degrees), with ``values`` of a new effect.
+
+    A relaxed net turns as a whole about its seed, and the heading of its first side holds it but softly.
+    """
+    meant = as_meant(base)
+    return [(np.array([0.0, 0.0, turn, *meant[3:]]), values) for turn in turns]
 
 
 def _best_start(
