@@ -67,9 +67,9 @@ def try_effects(
         if kind.costly and kind.acts_at_once and trial.fit.chi2 - noise < 0.5 * (least - noise):
             turns = (float(trial.values[TURN]),)  # where one net has turned to, another will have
         least = min(least, trial.fit.chi2)
-    best = int(np.argmin([t.fit.chi2 for t in trials])) if trials else None
-    if best is not None:
-        trials[best] = further(experiment, whiten, trials[best])
+    if trials:
+        first = int(np.argmin([t.fit.chi2 for t in trials]))
+        trials[first] = further(experiment, whiten, trials[first])
     models = [base, *trials]
     rows = np.all([np.isfinite(m.fit.residual) for m in models], axis=0)
     judge = judge_of(experiment, rows)
