@@ -15,19 +15,17 @@ import numpy as np
 from geomdrap.criticism.cleaned import cleaned, outliers_of
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
 from geomdrap.criticism.evidence import alike_in_what_they_leave, rivals, says_the_same
-from geomdrap.criticism.experiment import Experiment, Layup, restless
+from geomdrap.criticism.experiment import Experiment, Layup, flatten
+from geomdrap.criticism.final import final, said_of_coarser, told_apart
 from geomdrap.criticism.jackknife import widened
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
 from geomdrap.criticism.locked import LOCKING, doubted, locks, shear_stops
 from geomdrap.criticism.model import (
     Fitted,
-    doubted_for_facets,
     fit_placement,
-    refined,
     refit,
     unfitted,
-    with_fresh_slopes,
 )
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round, judge_of, steps_of, try_effects
@@ -47,7 +45,6 @@ MOST_EFFECTS = 2
 SHIFTED = 0.5  # mm: a seed that lies further off than this is named
 TURNED = 0.4  # degrees: likewise
 CERTAIN = 3.0  # standard deviations of the placement
-ELSEWHERE = 1.5  # of the chi-square on the coarser net: a finer one that fits worse came to rest elsewhere
 WORTH = 0.03  # of the first misfit: what a further effect must explain
 UNEXPLAINED = 0.015  # of the first misfit: what the final model may leave where structure is in it
 
@@ -86,33 +83,38 @@ def diagnose(
         rounds = search(experiment, names, progress)
         clean = cleaned(experiment, rounds[-1].closest)
         if clean is not None:
-            experiment, rounds = clean, search(clean, names, progress, len(rounds))
+            rows = flatten(clean.mask, experiment.mask)
+            known = [m.only(rows, clean.noise) for r in rounds for m in (r.base, *r.trials)]
+            experiment, rounds = clean, search(clean, names, progress, len(rounds), known)
         return conclude(experiment, rounds, notes)
 
 
-def search(experiment: Experiment, names: Sequence[str], progress: Progress, passed: int = 0) -> list[Round]:
+def search(
+    experiment: Experiment,
+    names: Sequence[str],
+    progress: Progress,
+    passed: int = 0,
+    known: Sequence[Fitted] = (),
+) -> list[Round]:
     """Rounds of the search: the first on the plain net, each further one on the model found before it.
 
-    ``passed`` rounds have been told to ``progress`` before.
+    ``passed`` rounds have been told to ``progress`` before; ``known`` models were fitted before some values were
+    dropped.
     """
-    whiten = white(experiment)
-    base = fit_placement(experiment, whiten)
+    whiten = experiment.white
+    base = refit(experiment, whiten, known[0]) if known else fit_placement(experiment, whiten)
     rounds: list[Round] = []
     while True:
         left = [name for name in names if name not in base.model.effects]
         told = _teller(progress, passed + len(rounds), steps_of(left))
-        rounds.append(try_effects(experiment, base, whiten, left, told))
+        old = [m for m in known if m.model.effects[:-1] == base.model.effects and m.model.effects]
+        rounds.append(try_effects(experiment, base, whiten, left, told, old))
         best = chosen(rounds)
         if best is None or len(rounds) == MOST_EFFECTS or locks(experiment, rounds[0]):
             return rounds
         base, scatter = rounds[-1].trial(best)
         if not (leaves(rounds[0], base, WORTH) and left_over(experiment, base, scatter).structured):
             return rounds
-
-
-def white(experiment: Experiment) -> Callable[[np.ndarray], np.ndarray]:
-    """Division by the noise."""
-    return lambda a: a / (experiment.noise if a.ndim == 1 else experiment.noise[:, None])
 
 
 def _teller(progress: Progress, passed: int, count: int) -> Callable[[str], None]:
@@ -165,16 +167,20 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
     """The verdict on a finished search."""
     names, model, scatter = found_by(rounds)
     meant = experiment
-    experiment, model = _final(meant, model, scatter)
+    ends = told_apart(meant, rounds[len(names) - 1], rivals(rounds[len(names) - 1].evidence)) if names else {}
+    alike = tuple(ends)
+    if alike:
+        names = [*names[:-1], alike[0]]
+        scatter = rounds[len(names) - 1].trial(alike[0])[1]
+    experiment, model = ends[alike[0]] if alike else final(meant, model, scatter)
     left = left_over(experiment, model, scatter)
-    alike = rivals(rounds[len(names) - 1].evidence) if names else ()
     # a plateau that the model found does not foretell is no matter of chance: nothing else makes one
     if locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):
         alike = (LOCKING,)
         if names != [LOCKING]:
             names = [LOCKING]
             model, scatter = rounds[0].trial(LOCKING)
-            experiment, model = _final(meant, model, scatter)
+            experiment, model = final(meant, model, scatter)
             left = left_over(experiment, model, scatter)
     if LOCKING in names:
         model = doubted(experiment, rounds[0], model)
@@ -199,45 +205,8 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         leftover=left,
         outliers=outliers_of(experiment, model),
         hints=hints_for(experiment, rounds, verdict, candidates, model, left),
-        notes=(*notes, *_coarser(meant, experiment, model), *_failures(experiment, rounds)),
+        notes=(*notes, *said_of_coarser(meant, experiment, model), *_failures(experiment, rounds)),
     )
-
-
-def _final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Experiment, Fitted]:
-    """The model fitted to the end, under the scatter that it leaves, and the experiment with the nets for that.
-
-    A finer net that fits much worse came to rest in another place, and tells nothing of the values; nor does one that
-    does not come to rest.
-    """
-    rows = np.isfinite(model.fit.residual)
-    whole = bool(rows.all())
-    whiten = judge_of(experiment, rows).whiten(scatter) if whole else white(experiment)
-    if any(make(name).costly for name in model.model.effects):
-        finer = experiment.finer()
-        if not rests(finer, model):
-            return experiment, doubted_for_facets(experiment, model)
-        better = refined(experiment, finer, whiten, model)
-        before = float((whiten(np.nan_to_num(model.fit.residual)) ** 2).sum())
-        kept, model = (finer, better) if better.fit.chi2 <= ELSEWHERE * before else (experiment, model)
-        return kept, doubted_for_facets(experiment, model)
-    if scatter.size > 0.0 and whole:
-        model = refit(experiment, whiten, model)
-    return experiment, doubted_for_facets(experiment, with_fresh_slopes(experiment, model))
-
-
-def _coarser(meant: Experiment, final: Experiment, model: Fitted) -> tuple[str, ...]:
-    """A sentence where values had to be left to the coarser net."""
-    if final is not meant or not any(make(name).costly for name in model.model.effects):
-        return ()
-    return (
-        f"the values of {' and '.join(model.model.effects)} are those of a net of {meant.pitches[1]:g} mm: a finer "
-        "one came to rest elsewhere or not at all, so their intervals are too narrow",
-    )
-
-
-def rests(experiment: Experiment, model: Fitted) -> bool:
-    """Whether the net of a costly model comes to rest."""
-    return not restless(experiment.draped(model.model.built(model.values), experiment.pitches[1]))
 
 
 def _failures(experiment: Experiment, rounds: Sequence[Round]) -> tuple[str, ...]:
@@ -277,13 +246,13 @@ def _misplaced(experiment: Experiment, model: Fitted, scatter: Scatter) -> bool:
     )
 
 
-def _steps(experiment: Experiment, rounds: Sequence[Round], names: Sequence[str], final: Fitted) -> tuple[Step, ...]:
+def _steps(experiment: Experiment, rounds: Sequence[Round], names: Sequence[str], last: Fitted) -> tuple[Step, ...]:
     from geomdrap.criticism.table import errors_of
 
     plain = unfitted(experiment)
     models = [plain, rounds[0].base, *(rounds[k].trial(name)[0] for k, name in enumerate(names))]
     if names:
-        models[-1] = final
+        models[-1] = last
     added = [None, "placement", *names]
     return tuple(Step(name, *errors_of(experiment, model)) for name, model in zip(added, models, strict=True))
 

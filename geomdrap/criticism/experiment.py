@@ -181,6 +181,10 @@ class Experiment:
         kept: dict[str, dict[str, object]] = {name: {} for name in names}
         return replace(self, on_facets=True, **kept)  # type: ignore[arg-type]
 
+    def white(self, values: np.ndarray) -> np.ndarray:
+        """Values (m,) or slopes (m, p) over the noise."""
+        return values / (self.noise if values.ndim == 1 else self.noise[:, None])
+
     def noise_by_kind(self) -> tuple[float | None, float | None, float | None]:
         """Typical noise of positions (mm), shear and directions (degrees); None where not measured."""
         channel = np.array(self.channels)[self.channel_of()]

@@ -47,6 +47,7 @@ def fit(
     slopes: np.ndarray | None = None,
     most: int = STEPS,
     enough: float = math.inf,
+    patience: int = 2 * FIRST_STEPS,
     sloped: Predict | None = None,
 ) -> Fit:
     """Parameters (p,) between ``low`` and ``high`` with the least squares of ``whiten(measured - predict(p))``.
@@ -54,7 +55,7 @@ def fit(
     ``predict`` gives (m,) values, NaN where it has none; those count as if they had kept their last residual.
     ``steps`` (p,) are the differences with which slopes are taken, where ``slopes`` (m, p) are not given. At
     most ``most`` steps are tried; a fit that is above a chi-square of ``enough`` ``FIRST_STEPS`` after the start, or
-    after slopes were taken anew, is given up.
+    after slopes were taken anew, but at the latest after ``patience`` steps, is given up.
     ``sloped`` is what slopes are taken from: a cheaper prediction that changes alike; None for ``predict`` itself.
     """
     values = np.clip(np.asarray(start, dtype=float), low, high)
@@ -98,7 +99,7 @@ def fit(
                 break
         elif not fresh:  # the slopes are worn: take them anew, once for each place
             jacobian[:, free] = take_slopes(rough, values, rough(values), steps, low, high, free)[:, free]
-            fresh, first = True, min(max(first, tried + 1 + FIRST_STEPS), 2 * FIRST_STEPS)
+            fresh, first = True, min(max(first, tried + 1 + FIRST_STEPS), patience)
         elif foreseen < RAGGED:
             jacobian = before  # what a step beyond a threshold has shown is no slope here
             break

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.criticism.fit import STEPS, Fit, fit, take_slopes
+from geomdrap.criticism.fit import FIRST_STEPS, STEPS, Fit, fit, take_slopes
 from geomdrap.criticism.likelihood import is_noise, square_beside
 from geomdrap.criticism.smooth import note_on
 from geomdrap.criticism.start import LEAST_GAIN, TURNS, Glance, glance, start_values
@@ -116,6 +116,12 @@ class Fitted:
         """Values (p,) of the model's parameters."""
         return self.fit.values
 
+    def only(self, rows: np.ndarray, noise: np.ndarray) -> Fitted:
+        """The model compared with some values (m,) bool only, of which ``noise`` (k,) are the deviations."""
+        residual = self.fit.residual[rows]
+        chi2 = float(np.nansum((residual / noise) ** 2))
+        return replace(self, fit=Fit(self.values, residual, self.fit.slopes[rows], chi2))
+
     def parameters_of(self, effect: str) -> list[tuple[Parameter, int]]:
         """Parameters of an effect with their numbers in the vector."""
         return [(p, k) for k, (name, p) in enumerate(self.model.parameters) if name == effect]
@@ -213,7 +219,8 @@ def add_effect(
     most = FEW_STEPS if kind.costly else STEPS
     # slopes may mislead a first step or two; what is still far off then stays so
     enough = least + far * (base.fit.chi2 - least) if seen is not None else math.inf
-    found = fit(predict, experiment.measured, whiten, start, model.steps, low, high, slopes, most, enough)
+    patience = 2 * FIRST_STEPS if kind.costly else FIRST_STEPS
+    found = fit(predict, experiment.measured, whiten, start, model.steps, low, high, slopes, most, enough, patience)
     return Fitted(model, found)
 
 
@@ -287,6 +294,26 @@ def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted)
     found = fit(fine, finer.measured, whiten, found.values, model.steps, low, high, None, REFINEMENTS, sloped=coarse)
     ratio, moved = coarser.pitches[1] / finer.pitches[1], np.abs(found.values - old.values)
     return Fitted(model, found, moved / (ratio**2 - 1.0) if ratio > 1.0 and moved.any() else None)
+
+
+def again(experiment: Experiment, whiten: Whiten, base: Fitted, known: Sequence[Fitted]) -> list[Fitted]:
+    """Models with one effect more than the base that were fitted before some values were dropped.
+
+    Only those near the best are fitted again: the others predict what they did.
+    """
+    least = min((t.fit.chi2 for t in known), default=base.fit.chi2)
+    out = []
+    for trial in known:
+        if trial.fit.chi2 - least <= NEARLY * (base.fit.chi2 - least):
+            out.append(refit(experiment, whiten, trial))
+        elif trial.fit.chi2 < base.fit.chi2:
+            out.append(trial)
+        else:
+            own = slice(len(base.values), None)
+            values = np.append(base.values, trial.model.neutral[own])
+            slopes = np.hstack([base.fit.slopes, trial.fit.slopes[:, own]])
+            out.append(replace(trial, fit=Fit(values, base.fit.residual, slopes, base.fit.chi2)))
+    return out
 
 
 def with_fresh_slopes(experiment: Experiment, old: Fitted) -> Fitted:

@@ -11,7 +11,7 @@ from geomdrap.criticism.evidence import Evidence, among_all, chance
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.holdout import blocks_of, held_out_error
 from geomdrap.criticism.likelihood import Judge, Residuals, Scatter, deviations
-from geomdrap.criticism.model import Fitted, Look, Whiten, add_effect, further, look_at, slow
+from geomdrap.criticism.model import Fitted, Look, Whiten, add_effect, again, further, look_at, slow
 from geomdrap.criticism.start import TURNS
 from geomdrap.effects import make
 
@@ -50,11 +50,20 @@ class Round:
 
 
 def try_effects(
-    experiment: Experiment, base: Fitted, whiten: Whiten, names: Sequence[str], done: Callable[[str], None]
+    experiment: Experiment,
+    base: Fitted,
+    whiten: Whiten,
+    names: Sequence[str],
+    done: Callable[[str], None],
+    known: Sequence[Fitted] = (),
 ) -> Round:
-    """Fit every effect on top of the base, and weigh what speaks for it. ``done`` is told each name."""
-    trials, failed = [], []
-    least = base.fit.chi2
+    """Fit every effect on top of the base, and weigh what speaks for it. ``done`` is told each name.
+
+    ``known`` are models with one effect more than the base that were fitted before some values were dropped.
+    """
+    trials, failed = again(experiment, whiten, base, known), []
+    least = min([base.fit.chi2, *(t.fit.chi2 for t in trials)])
+    names = [name for name in names if name not in [t.model.effects[-1] for t in trials]]
     turns: Sequence[float] = TURNS
     for look in _looks(experiment, base, whiten, names, done):
         done(look.effect)

@@ -21,6 +21,7 @@ from geomdrap.criticism.search import Round
 from geomdrap.surface import shapes
 
 diagnose = import_module("geomdrap.criticism.diagnose")  # the package's own name for it is the function
+last = import_module("geomdrap.criticism.final")
 POINTS = 12
 
 
@@ -66,9 +67,9 @@ def test_locking_in_place_of_another_costly_effect_is_fitted_on_a_net_of_half_th
             raise StopIteration  # the verdict is no matter here
         return model
 
-    monkeypatch.setattr(diagnose, "refined", record)
-    monkeypatch.setattr(diagnose, "doubted_for_facets", lambda _, model: model)
-    monkeypatch.setattr(diagnose, "rests", lambda *_: True)
+    monkeypatch.setattr(last, "refined", record)
+    monkeypatch.setattr(last, "doubted_for_facets", lambda _, model: model)
+    monkeypatch.setattr(last, "rests", lambda *_: True)
     monkeypatch.setattr(diagnose, "left_over", lambda *_: SimpleNamespace(structured=True))
     monkeypatch.setattr(diagnose, "locks", lambda *_: True)
     with pytest.raises(StopIteration):
@@ -81,24 +82,24 @@ def test_a_finer_net_that_came_to_rest_elsewhere_tells_nothing_and_that_is_said(
     meant, old = experiment((1.0, 8.0)), fitted("shear-stiffness")
     old = replace(old, fit=replace(old.fit, residual=np.full(POINTS, np.sqrt(100.0 / POINTS)), chi2=1.0))
     new = replace(old, fit=replace(old.fit, chi2=100.0 * worse))
-    monkeypatch.setattr(diagnose, "refined", lambda *_: new)
-    monkeypatch.setattr(diagnose, "doubted_for_facets", lambda _, model: model)
-    monkeypatch.setattr(diagnose, "rests", lambda *_: True)
-    final, model = diagnose._final(meant, old, NO_SCATTER)
+    monkeypatch.setattr(last, "refined", lambda *_: new)
+    monkeypatch.setattr(last, "doubted_for_facets", lambda _, model: model)
+    monkeypatch.setattr(last, "rests", lambda *_: True)
+    final, model = last.final(meant, old, NO_SCATTER)
     assert (final is meant, model is old) == (kept, kept)
-    said = diagnose._coarser(meant, final, model)
+    said = last.said_of_coarser(meant, final, model)
     assert bool(said) == kept
     assert all("the values of shear-stiffness are those of a net of 8 mm" in one for one in said)
 
 
 def test_a_finer_net_that_does_not_come_to_rest_is_not_fitted(monkeypatch):
     meant, old = experiment((1.0, 8.0)), fitted("shear-stiffness")
-    monkeypatch.setattr(diagnose, "rests", lambda *_: False)
-    monkeypatch.setattr(diagnose, "refined", None)
-    monkeypatch.setattr(diagnose, "doubted_for_facets", lambda _, model: model)
-    final, model = diagnose._final(meant, old, NO_SCATTER)
+    monkeypatch.setattr(last, "rests", lambda *_: False)
+    monkeypatch.setattr(last, "refined", None)
+    monkeypatch.setattr(last, "doubted_for_facets", lambda _, model: model)
+    final, model = last.final(meant, old, NO_SCATTER)
     assert final is meant and model is old
-    assert "not at all" in diagnose._coarser(meant, final, model)[0]
+    assert "not at all" in last.said_of_coarser(meant, final, model)[0]
 
 
 SLOPES = np.random.default_rng(1).normal(size=(POINTS, 4))  # of the placement and an offset

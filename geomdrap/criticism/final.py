@@ -1,0 +1,84 @@
+"""The model found, fitted to the end: on finer nets, if its drapes are costly, which also tell rivals apart.
+
+On a coarse net a model of another effect may do as well, for what it makes up of the pitch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from geomdrap.criticism.evidence import RIVAL, RIVAL_SHARE, RIVAL_WITHIN
+from geomdrap.criticism.experiment import Experiment, restless
+from geomdrap.criticism.likelihood import Scatter
+from geomdrap.criticism.model import Fitted, doubted_for_facets, refined, refit, with_fresh_slopes
+from geomdrap.criticism.search import Round, judge_of
+from geomdrap.effects import make
+
+ELSEWHERE = 1.5  # of the chi-square on the coarser net: a finer one that fits worse came to rest elsewhere
+FINER = 4.0  # times smaller are the errors of a net of half the pitch
+
+
+def final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Experiment, Fitted]:
+    """The model fitted to the end, under the scatter that it leaves, and the experiment with the nets for that.
+
+    A finer net that fits much worse came to rest in another place, and tells nothing of the values; nor does one that
+    does not come to rest.
+    """
+    rows = np.isfinite(model.fit.residual)
+    whole = bool(rows.all())
+    whiten = judge_of(experiment, rows).whiten(scatter) if whole else experiment.white
+    if any(make(name).costly for name in model.model.effects):
+        finer = experiment.finer()
+        if not rests(finer, model):
+            return experiment, doubted_for_facets(experiment, model)
+        better = refined(experiment, finer, whiten, model)
+        before = float((whiten(np.nan_to_num(model.fit.residual)) ** 2).sum())
+        kept, model = (finer, better) if better.fit.chi2 <= ELSEWHERE * before else (experiment, model)
+        return kept, doubted_for_facets(experiment, model)
+    if scatter.size > 0.0 and whole:
+        model = refit(experiment, whiten, model)
+    return experiment, doubted_for_facets(experiment, with_fresh_slopes(experiment, model))
+
+
+def said_of_coarser(meant: Experiment, last: Experiment, model: Fitted) -> tuple[str, ...]:
+    """A sentence where values had to be left to the coarser net."""
+    if last is not meant or not any(make(name).costly for name in model.model.effects):
+        return ()
+    return (
+        f"the values of {' and '.join(model.model.effects)} are those of a net of {meant.pitches[1]:g} mm: a finer "
+        "one came to rest elsewhere or not at all, so their intervals are too narrow",
+    )
+
+
+def rests(experiment: Experiment, model: Fitted) -> bool:
+    """Whether the net of a costly model comes to rest."""
+    return not restless(experiment.draped(model.model.built(model.values), experiment.pitches[1]))
+
+
+def told_apart(experiment: Experiment, last: Round, alike: Sequence[str]) -> dict[str, tuple[Experiment, Fitted]]:
+    """The rivals ``alike`` of the last round of a search that are left, the best first, each fitted to the end.
+
+    What nets on which costly ones could not be fitted do not tell apart stays as it was.
+    """
+    ends = {name: final(experiment, *last.trial(name)) for name in alike}
+    costly = [name for name in alike if make(name).costly]
+    if len(alike) < 2 or not costly or any(ends[name][0] is experiment for name in costly):
+        return ends
+    rows = np.all([np.isfinite(model.fit.residual) for _, model in ends.values()], axis=0)
+    whiten = judge_of(experiment, rows).whiten(last.trial(alike[0])[1])
+    of = {e.name: e for e in last.evidence}
+    score = {
+        name: float((whiten(model.fit.residual[rows]) ** 2).sum()) + 2.0 * of[name].unknowns
+        for name, (_, model) in ends.items()
+    }
+    order = sorted(score, key=lambda name: score[name])
+    best = of[order[0]]
+    margin = max(RIVAL, RIVAL_SHARE / FINER * best.gain)
+
+    def near(name: str) -> bool:
+        enough = max(margin, RIVAL_WITHIN) if name in best.includes else margin
+        return score[name] - score[best.name] < enough and best.name not in of[name].includes
+
+    return {name: ends[name] for name in order if near(name)}
