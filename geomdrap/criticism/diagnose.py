@@ -185,10 +185,11 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
     if LOCKING in names:
         model = doubted(experiment, rounds[0], model)
     model = widened(experiment, model, scatter)
+    near = {name: widened(*ends[name], rounds[len(names) - 1].trial(name)[1]) for name in alike[1:] if name in ends}
     unexplained = left.structured and leaves(rounds[0], model, UNEXPLAINED) and names != [LOCKING]
     if unexplained and len(alike) == 1:
-        near = alike_in_what_they_leave(rounds[len(names) - 1].evidence)
-        alike = near if names[-1] in near else alike
+        others = alike_in_what_they_leave(rounds[len(names) - 1].evidence)
+        alike = others if names[-1] in others else alike
     verdict, candidates = _verdict(experiment, model, scatter, names, alike, unexplained)
     steps = _steps(experiment, rounds, names, model)
     return Diagnosis(
@@ -199,7 +200,7 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
         steps=steps,
         noise_floor=_floor(experiment, scatter),
         placement=values_of(experiment, model, scatter, "placement"),
-        tried=tried_of(experiment, rounds, names, model, scatter),
+        tried=tried_of(experiment, rounds, names, model, scatter, near),
         effects=tuple(model.model.built(model.values)),
         scatter=scatter,
         leftover=left,

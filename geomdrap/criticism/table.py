@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -52,16 +52,23 @@ def values_of(experiment: Experiment, model: Fitted, scatter: Scatter, effect: s
 
 
 def tried_of(
-    experiment: Experiment, rounds: Sequence[Round], names: Sequence[str], final: Fitted, scatter: Scatter
+    experiment: Experiment,
+    rounds: Sequence[Round],
+    names: Sequence[str],
+    final: Fitted,
+    scatter: Scatter,
+    ends: Mapping[str, Fitted],
 ) -> tuple[Tried, ...]:
-    """Every effect, the likeliest first; those of the final model with their final values."""
+    """Every effect, the likeliest first; those of the final model, and rivals (``ends``), with their final values."""
     last = rounds[-1] if len(rounds) > len(names) else rounds[len(names) - 1]
     rows = []
     for k, name in enumerate(names):
         rows.append(_row(experiment, rounds[k], name, final, scatter, scatter, True))
     others = [t.model.effects[-1] for t in last.trials if t.model.effects[-1] not in names]
     others.sort(key=lambda name: -_evidence(last, name).gain)
-    rows += [_row(experiment, last, name, *last.trial(name), scatter, False) for name in others]
+    for name in others:
+        trial, own = last.trial(name)
+        rows.append(_row(experiment, last, name, ends.get(name, trial), own, scatter, False))
     return tuple(rows)
 
 
