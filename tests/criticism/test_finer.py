@@ -102,6 +102,31 @@ def test_a_finer_net_that_does_not_come_to_rest_is_not_fitted(monkeypatch):
     assert "not at all" in last.said_of_coarser(meant, final, model)[0]
 
 
+@pytest.mark.parametrize(
+    ("behind", "coarse", "left"),
+    [
+        (9.0, False, ["shear-asymmetry"]),
+        (4.0, False, ["shear-asymmetry", "shear-stiffness"]),
+        (9.0, True, ["shear-stiffness", "shear-asymmetry"]),
+    ],
+)
+def test_rivals_on_a_coarse_net_are_told_apart_by_finer_ones(monkeypatch, behind, coarse, left):
+    meant, finer = experiment((1.0, 8.0)), experiment((1.0, 4.0))
+    names = ("shear-stiffness", "shear-asymmetry")
+    evidence = tuple(Evidence(n, g, 1, 0.0, 0.0, 0.9, 0.5, True) for n, g in zip(names, (900.0, 899.0), strict=True))
+    trials = tuple(fitted(n) for n in names)
+    of = Round(fitted(), trials, evidence, (NO_SCATTER,) * 3, np.ones(POINTS, bool), None, 1.0, ())
+    chi2 = {names[0]: 12.0 + behind, names[1]: 12.0}
+
+    def final(experiment, model, scatter):
+        residual = np.full(POINTS, np.sqrt(chi2[model.model.effects[0]] / POINTS))
+        rested = experiment if coarse and model.model.effects == names[:1] else finer
+        return rested, replace(model, fit=replace(model.fit, residual=residual))
+
+    monkeypatch.setattr(last, "final", final)
+    assert list(last.told_apart(meant, of, names)) == left
+
+
 SLOPES = np.random.default_rng(1).normal(size=(POINTS, 4))  # of the placement and an offset
 TRUTH, PER_PITCH = np.array([0.3, -0.2, 0.5, 2.0]), np.array([0.01, 0.02, -0.01, 0.03])
 

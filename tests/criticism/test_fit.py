@@ -159,3 +159,16 @@ def test_a_step_goes_no_further_than_a_hundred_times_a_parameters_own():
     fit(predict, np.array([50.0, 50.0]), lambda a: a / 1e-3, np.zeros(2), STEPS, *WIDE)
     assert np.abs(np.diff(asked, axis=0)).max() <= 100.0 * STEPS[0] + 2.0 * STEPS[0]
     assert np.abs(asked).max() > 1.0
+
+
+def test_what_a_step_over_a_threshold_shows_is_no_slope():
+    """Below 0 the model is another one, and far off: the slopes are those of where the fit stays."""
+    a = np.random.default_rng(5).normal(size=(30, 2))
+    y = a @ [1.0, -0.02]
+
+    def predict(p):
+        return a @ p + (1e3 if p[1] < 0.0 else 0.0)
+
+    got = fit(predict, y, same, np.array([1.0, 0.01]), STEPS, *WIDE)
+    assert got.values[1] >= 0.0
+    np.testing.assert_allclose(got.slopes, a, atol=0.05)

@@ -10,7 +10,7 @@ from geomdrap.criticism.cleaned import cleaned, spoilt
 from geomdrap.criticism.diagnose import _teller
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fit import Fit
-from geomdrap.criticism.model import Fitted, Look, Model
+from geomdrap.criticism.model import Fitted, Look, Model, again
 from geomdrap.criticism.start import Glance, glance, start_values
 from geomdrap.measurement.outliers import Outlier
 
@@ -114,3 +114,60 @@ def test_what_stands_out_is_taken_out_where_a_model_explains_all_else(monkeypatc
     if got is not None:
         assert not got.mask[3, 0]
         assert got.mask.sum() == POINTS - 1
+
+
+def test_what_acts_at_once_is_never_fitted_to_nothing():
+    low, high = Model(("shear-stiffness", "slip", "yarn-bending")).bounds
+    assert (low[[3, 5]] > 0.0).all() and low[4] == 0.0
+    assert (low < high).all()
+
+
+def trial_at(name, values, chi2, residual=0.0):
+    model = Model((name,))
+    slopes = np.column_stack([PLACES, np.full((POINTS, len(values) - 3), 2.0)])
+    return Fitted(model, Fit(np.array(values), np.full(POINTS, residual), slopes, chi2))
+
+
+def test_models_known_before_readings_were_dropped_are_fitted_again_only_near_the_best(monkeypatch):
+    base = Fitted(Model(()), Fit(np.array([9.0, 0.0, 0.0]), np.full(POINTS, 0.7), PLACES, 1000.0))
+    known = [
+        trial_at("slip", [0.0, 0.0, 0.0, 0.1], 100.0),
+        trial_at("shear-stiffness", [0.0, 0.0, 0.0, 0.003], 110.0),
+        trial_at("locking", [0.0, 0.0, 0.0, 20.0], 600.0),
+        trial_at("bridging", [3.0, 0.0, 0.0, 0.0], 1001.0),
+    ]
+    fitted_again = []
+    monkeypatch.setattr("geomdrap.criticism.model.refit", lambda _, __, old: fitted_again.append(old) or old)
+    got = again(None, whiten, base, known)
+    assert fitted_again == known[:2]
+    assert got[2] is known[2]
+    np.testing.assert_array_equal(got[3].values, [9.0, 0.0, 0.0, 0.0])  # what explains nothing is the base
+    assert got[3].fit.chi2 == base.fit.chi2 and (got[3].fit.residual == 0.7).all()
+
+
+def test_a_model_is_compared_with_the_values_that_are_left():
+    residual = np.arange(POINTS, dtype=float)
+    model = Fitted(Model(()), Fit(np.zeros(3), residual, PLACES, 1e9))
+    rows = residual < 3.0
+    less = model.only(rows, np.full(3, 0.5))
+    assert less.fit.chi2 == pytest.approx((0.0 + 1.0 + 4.0) / 0.25)
+    np.testing.assert_array_equal(less.fit.slopes, PLACES[:3])
+
+
+@pytest.mark.parametrize(("astray", "looked"), [(5.0, True), (0.2, False)])
+def test_a_two_sided_costly_effect_is_looked_for_at_other_headings_if_the_base_went_astray(astray, looked):
+    shape = np.sin(5.0 * AT[:, 0])
+    measured = PLACES @ [0.0, 0.0, 8.0] + 0.4 * shape
+    headings = []
+
+    def predict(v):
+        headings.append(v[2])
+        acts = v[3] * (abs(v[2] - 8.0) < 3.0 and abs(v[0]) < 0.5)  # the net lies like this only near its heading
+        return PLACES @ v[:3] + acts * shape + 1e-3 * v[3] * AT[:, 1] ** 2
+
+    experiment = SimpleNamespace(measured=measured, top_shear=30.0)
+    seen = Glance(np.array([0.2]), shape, 9.0, 1.0)
+    start = start_values(experiment, predict, whiten, base_at((astray, 0.0, 0.0), measured), "shear-asymmetry", seen)
+    assert ({-16.0, 8.0} <= set(headings)) == looked
+    if looked:
+        np.testing.assert_allclose(start, [0.0, 0.0, 8.0, 0.2], atol=0.5)
