@@ -26,13 +26,13 @@ DAMPED = 1e-2  # damping above which a small gain says nothing
 def relaxed(sheet: Sheet, plan: Array, recipe: Recipe, side: float) -> Array:
     """Give the plan points (n, n, 2) of least energy, from the geometric net ``plan``.
 
-    Nodes of no whole cell are left out: nothing holds one that hangs on a single yarn. NoMinimumError if no minimum
-    is found in STEPS steps.
+    Nodes of no whole cell are left out, and cells that no side joins to those beside the seed: nothing holds what
+    hangs on a single yarn. NoMinimumError if no minimum is found in STEPS steps.
     """
-    plan = np.where(_in_cells(np.isfinite(plan[..., 0]))[..., None], plan, np.nan)
-    known = np.isfinite(plan[..., 0])
-    if not known[plan.shape[0] // 2, plan.shape[0] // 2]:
+    known = _joined(np.isfinite(plan[..., 0]))
+    if not known.any():
         raise GeomdrapError(NO_CELL)
+    plan = np.where(known[..., None], plan, np.nan)
     net = topology(known)
     seed = int(np.cumsum(known)[np.ravel_multi_index((plan.shape[0] // 2,) * 2, known.shape)]) - 1
     problem = _Problem(sheet, net, recipe, side, plan[known], seed)
@@ -41,10 +41,15 @@ def relaxed(sheet: Sheet, plan: Array, recipe: Recipe, side: float) -> Array:
     return moved
 
 
-def _in_cells(known: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Which nodes (n, n) belong to a cell whose four nodes are ``known``."""
+def _joined(known: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Nodes (n, n) of cells whose four nodes are ``known``, joined by sides to those beside the first warp side."""
+    from scipy.ndimage import label
+
     corners = np.s_[:-1, :-1], np.s_[1:, :-1], np.s_[1:, 1:], np.s_[:-1, 1:]
-    whole = np.logical_and.reduce([known[corner] for corner in corners])
+    patch, _ = label(np.logical_and.reduce([known[corner] for corner in corners]))
+    m = len(known) // 2
+    beside = patch[m, m - 1 : m + 1]
+    whole = np.isin(patch, beside[beside > 0])
     kept = np.zeros_like(known)
     for corner in corners:
         kept[corner] |= whole

@@ -84,7 +84,8 @@ def diagnose(
         clean = cleaned(experiment, rounds[-1].closest)
         if clean is not None:
             rows = flatten(clean.mask, experiment.mask)
-            known = [m.only(rows, clean.noise) for r in rounds for m in (r.base, *r.trials)]
+            models = [rounds[0].base, *(trial for r in rounds for trial in r.trials)]
+            known = [m.only(rows, clean.noise) for m in models]
             experiment, rounds = clean, search(clean, names, progress, len(rounds), known)
         return conclude(experiment, rounds, notes)
 
@@ -167,11 +168,13 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
     """The verdict on a finished search."""
     names, model, scatter = found_by(rounds)
     meant = experiment
-    ends = told_apart(meant, rounds[len(names) - 1], rivals(rounds[len(names) - 1].evidence)) if names else {}
-    alike = tuple(ends)
-    if alike:
-        names = [*names[:-1], alike[0]]
-        scatter = rounds[len(names) - 1].trial(alike[0])[1]
+    alike: tuple[str, ...] = ()
+    ends: dict[str, tuple[Experiment, Fitted]] = {}
+    if names:
+        k = len(names) - 1
+        ends, seen = told_apart(meant, rounds[k], rivals(rounds[k].evidence))
+        alike, rounds = tuple(ends), [*rounds[:k], seen, *rounds[k + 1 :]]
+        names, scatter = [*names[:k], alike[0]], seen.trial(alike[0])[1]
     experiment, model = ends[alike[0]] if alike else final(meant, model, scatter)
     left = left_over(experiment, model, scatter)
     # a plateau that the model found does not foretell is no matter of chance: nothing else makes one

@@ -73,17 +73,18 @@ def among_all(p_values: Sequence[float]) -> np.ndarray:
     return out
 
 
-def rivals(evidence: Sequence[Evidence]) -> tuple[str, ...]:
+def rivals(evidence: Sequence[Evidence], share: float = RIVAL_SHARE) -> tuple[str, ...]:
     """The best effect found, and those that cannot be told from it, the best first; empty if none was found.
 
     What does no better than the best, and comes to it at small values, is no rival: it says the same with more. If
-    such an effect is the best, what it comes to must be clearly less likely to be no rival.
+    such an effect is the best, what it comes to must be clearly less likely to be no rival. Nor are those rivals that
+    explain less than all but a ``share`` of what the best does.
     """
     found = sorted((e for e in evidence if e.found), key=lambda e: e.unknowns * 2.0 - e.gain)
     if not found:
         return ()
     best = found[0]
-    margin = max(RIVAL, RIVAL_SHARE * best.gain)
+    margin = max(RIVAL, share * best.gain)
     near = []
     for e in found:
         behind = best.gain - 2.0 * best.unknowns - (e.gain - 2.0 * e.unknowns)

@@ -11,8 +11,8 @@ import numpy as np
 
 from geomdrap.criticism.kept import kept
 from geomdrap.criticism.smooth import Split, smoothed
-from geomdrap.fishnet import Effect, Net, drape
-from geomdrap.fishnet.effect import in_order, surface_with
+from geomdrap.fishnet import Effect, Fabric, Net, drape
+from geomdrap.fishnet.effect import fabric_with, in_order, surface_with
 from geomdrap.fishnet.relax_net import UNREST
 
 if TYPE_CHECKING:
@@ -122,9 +122,9 @@ class Experiment:
 
         Over a longer way it might be held back in another balance than the one that a drape finds.
         """
-        if self.coarser is not None and pitch == self.pitches[1]:
-            return self._draped(effects, pitch, self.draped(effects, self.coarser))
         acting = in_order(effects)
+        if self.coarser is not None and pitch == self.pitches[1]:
+            return self._refined(acting, pitch, self.coarser)
         names = f"{pitch!r} {'+'.join(e.name for e in acting)}"
         before, last = self.last.get(names, (acting, None))
         near = last if _alike(before, acting) else None
@@ -134,6 +134,15 @@ class Experiment:
         if not restless(net):
             self.last[names] = acting, net
         return net
+
+    def _refined(self, effects: Sequence[Effect], pitch: float, coarser: float) -> Net:
+        """A net of what is costly, from a coarser one if that is of least energy and at rest."""
+        if fabric_with(effects, Fabric()).relaxes:
+            near = self.draped(effects, coarser)
+            net = near if restless(near) else self._draped(effects, pitch, near)
+            if not restless(net):
+                return net
+        return self._draped(effects, pitch)
 
     def _draped(self, effects: Sequence[Effect], pitch: float, near: Net | None = None) -> Net:
         lay, (surface, others) = self.layup, self._surface_under(effects)

@@ -5,11 +5,12 @@ On a coarse net a model of another effect may do as well, for what it makes up o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from geomdrap.criticism.evidence import RIVAL, RIVAL_SHARE, RIVAL_WITHIN
+from geomdrap.criticism.evidence import RIVAL_SHARE, Evidence, rivals
 from geomdrap.criticism.experiment import Experiment, restless
 from geomdrap.criticism.likelihood import Scatter
 from geomdrap.criticism.model import Fitted, doubted_for_facets, refined, refit, with_fresh_slopes
@@ -57,28 +58,34 @@ def rests(experiment: Experiment, model: Fitted) -> bool:
     return not restless(experiment.draped(model.model.built(model.values), experiment.pitches[1]))
 
 
-def told_apart(experiment: Experiment, last: Round, alike: Sequence[str]) -> dict[str, tuple[Experiment, Fitted]]:
-    """The rivals ``alike`` of the last round of a search that are left, the best first, each fitted to the end.
+def told_apart(
+    experiment: Experiment, last: Round, alike: Sequence[str]
+) -> tuple[dict[str, tuple[Experiment, Fitted]], Round]:
+    """The rivals ``alike`` that finer nets leave, the best first, each fitted to the end; the round as those see it.
 
-    What nets on which costly ones could not be fitted do not tell apart stays as it was.
+    ``last`` is the round of the search that found them. What nets on which costly ones could not be fitted do not
+    tell apart stays as it was.
     """
     ends = {name: final(experiment, *last.trial(name)) for name in alike}
     costly = [name for name in alike if make(name).costly]
     if len(alike) < 2 or not costly or any(ends[name][0] is experiment for name in costly):
-        return ends
+        return ends, last
     rows = np.all([np.isfinite(model.fit.residual) for _, model in ends.values()], axis=0)
     whiten = judge_of(experiment, rows).whiten(last.trial(alike[0])[1])
-    of = {e.name: e for e in last.evidence}
-    score = {
-        name: float((whiten(model.fit.residual[rows]) ** 2).sum()) + 2.0 * of[name].unknowns
-        for name, (_, model) in ends.items()
-    }
-    order = sorted(score, key=lambda name: score[name])
-    best = of[order[0]]
-    margin = max(RIVAL, RIVAL_SHARE / FINER * best.gain)
+    square = {name: float((whiten(model.fit.residual[rows]) ** 2).sum()) for name, (_, model) in ends.items()}
+    seen = replace(last, evidence=_as_seen(last.evidence, square))
+    margin = RIVAL_SHARE / FINER
+    return {name: ends[name] for name in rivals([e for e in seen.evidence if e.name in square], margin)}, seen
 
-    def near(name: str) -> bool:
-        enough = max(margin, RIVAL_WITHIN) if name in best.includes else margin
-        return score[name] - score[best.name] < enough and best.name not in of[name].includes
 
-    return {name: ends[name] for name in order if near(name)}
+def _as_seen(evidence: Sequence[Evidence], square: Mapping[str, float]) -> tuple[Evidence, ...]:
+    """Evidence with the rivals' gains and shares as far apart as their chi-squares ``square`` on finer nets are."""
+    of = {e.name: e for e in evidence}
+    best = of[min(square, key=lambda name: square[name] + 2.0 * of[name].unknowns)]
+    gain, share = (max(getattr(of[name], what) for name in square) for what in ("gain", "share"))
+    out = []
+    for e in evidence:
+        behind = square[e.name] - square[best.name] if e.name in square else 0.0
+        more = replace(e, gain=gain - behind, share=share * (1.0 - behind / gain))
+        out.append(more if e.name in square else e)
+    return tuple(out)

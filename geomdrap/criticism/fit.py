@@ -69,7 +69,7 @@ def fit(
         jacobian[:, free] = take_slopes(rough, values, rough(values), steps, low, high, free)[:, free]
     chi2 = _square(whiten(filled))
     damping = 0.0
-    fresh = slopes is None
+    fresh, good = slopes is None, jacobian
     first = FIRST_STEPS
     for tried in range(most):
         if tried >= first and chi2 > enough:
@@ -88,25 +88,21 @@ def fit(
         new_chi2 = _square(whiten(new))
         # Broyden's correction: what the step really changed, less what the slopes foretold
         scaled = step / steps
-        before = jacobian
         jacobian = jacobian + np.outer((filled - new - jacobian @ step) / (scaled @ scaled), scaled / steps)
         gain = chi2 - new_chi2
         if gain > 0.0:
             values, filled, chi2, damping = values + step, new, new_chi2, 0.0
             lost = np.isnan(there)
-            fresh = False
+            fresh, good = False, jacobian
             if gain < SMALL:
                 break
         elif not fresh:  # the slopes are worn: take them anew, once for each place
             jacobian[:, free] = take_slopes(rough, values, rough(values), steps, low, high, free)[:, free]
-            fresh, first = True, min(max(first, tried + 1 + FIRST_STEPS), patience)
-        elif foreseen < RAGGED:
-            jacobian = before  # what a step beyond a threshold has shown is no slope here
-            break
+            fresh, first, good = True, min(max(first, tried + 1 + FIRST_STEPS), patience), jacobian
         else:
+            jacobian = good  # what a refused step has shown, beyond a threshold it may be, is no slope here
             damping = max(4.0 * damping, 0.3)
-            if damping > 100.0:
-                jacobian = before
+            if foreseen < RAGGED or damping > 100.0:
                 break
     return Fit(values, np.where(lost, np.nan, filled), jacobian, _square(whiten(np.where(lost, 0.0, filled))))
 

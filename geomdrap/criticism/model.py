@@ -230,10 +230,12 @@ def further(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     It may still have been on its way: heading and stiffness make up for each other along a bent valley.
     """
     model = old.model
-    if not make(model.effects[-1]).costly or is_noise(old.fit.chi2, len(old.fit.residual)):
+    idle = old.looked_at_only or not make(model.effects[-1]).costly
+    if idle or is_noise(old.fit.chi2, len(old.fit.residual)):
         return old
     way = old.values, model.steps, *model.bounds, old.fit.slopes, MORE_STEPS
-    return Fitted(model, fit(predictor(experiment, model), experiment.measured, whiten, *way))
+    found = fit(predictor(experiment, model), experiment.measured, whiten, *way)
+    return Fitted(model, found) if found.chi2 < old.fit.chi2 else old
 
 
 def _not_fitted(model: Model, base: Fitted, seen: Glance) -> Fitted:
@@ -304,9 +306,10 @@ def again(experiment: Experiment, whiten: Whiten, base: Fitted, known: Sequence[
     least = min((t.fit.chi2 for t in known), default=base.fit.chi2)
     out = []
     for trial in known:
-        if trial.fit.chi2 - least <= NEARLY * (base.fit.chi2 - least):
+        better = trial.fit.chi2 < base.fit.chi2 and not trial.looked_at_only
+        if better and trial.fit.chi2 - least <= NEARLY * (base.fit.chi2 - least):
             out.append(refit(experiment, whiten, trial))
-        elif trial.fit.chi2 < base.fit.chi2:
+        elif better:
             out.append(trial)
         else:
             own = slice(len(base.values), None)

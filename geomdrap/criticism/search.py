@@ -78,7 +78,8 @@ def try_effects(
         least = min(least, trial.fit.chi2)
     if trials:
         first = int(np.argmin([t.fit.chi2 for t in trials]))
-        trials[first] = further(experiment, whiten, trials[first])
+        if trials[first].fit.chi2 < base.fit.chi2:
+            trials[first] = further(experiment, whiten, trials[first])
     models = [base, *trials]
     rows = np.all([np.isfinite(m.fit.residual) for m in models], axis=0)
     judge = judge_of(experiment, rows)

@@ -128,7 +128,7 @@ def start_values(
 ) -> np.ndarray:
     """Values to begin with: the best of a few probes of the new effect; ``seen``: what one look at it showed.
 
-    ``turns`` are headings, degrees, at which an effect that acts at once is tried.
+    ``turns`` are headings, degrees, at which nets that turn as a whole are tried.
     """
     own = make(effect).parameters
     p = len(base.values)
@@ -153,7 +153,7 @@ def start_values(
         slopes = np.column_stack([s / (q.typical - q.neutral) for s, q in zip(alone, own, strict=True)])
         step = np.linalg.lstsq(np.column_stack([shifts, whiten(slopes)]), whiten(residual), rcond=1e-9)[0]
         straight = base.values + step[:p], _within(neutral + step[p:], own)
-        if seen is None or not is_astray(base):
+        if seen is None or not (make(effect).costly and is_astray(base)):
             return np.append(*straight)
         return _best_start(experiment, predict, whiten, base, [straight, *_turned(base, seen.values, turns)])
 

@@ -60,15 +60,17 @@ def tried_of(
     ends: Mapping[str, Fitted],
 ) -> tuple[Tried, ...]:
     """Every effect, the likeliest first; those of the final model, and rivals (``ends``), with their final values."""
-    last = rounds[-1] if len(rounds) > len(names) else rounds[len(names) - 1]
+    found = rounds[max(len(names) - 1, 0)]
+    last = rounds[-1] if rounds[-1].base.model.effects == tuple(names) else found
     rows = []
     for k, name in enumerate(names):
         rows.append(_row(experiment, rounds[k], name, final, scatter, scatter, True))
     others = [t.model.effects[-1] for t in last.trials if t.model.effects[-1] not in names]
     others.sort(key=lambda name: -_evidence(last, name).gain)
     for name in others:
-        trial, own = last.trial(name)
-        rows.append(_row(experiment, last, name, ends.get(name, trial), own, scatter, False))
+        of = found if name in ends else last
+        trial, own = of.trial(name)
+        rows.append(_row(experiment, of, name, ends.get(name, trial), own, scatter, False))
     return tuple(rows)
 
 

@@ -1,9 +1,10 @@
 """Nets of least energy: a fabric that resists shear gives way until stretching and shearing are in balance.
 
 The nodes of the geometric net that have cells move on the part; the seed is held, and the first warp piece keeps its
-heading. Newton's method with exact second derivatives, the curvature of the part among them, in two unknowns a node.
-A step that does not lower the energy is shortened, then damped (Levenberg). Minimal is the net when the forces along
-the surface vanish against those that balance each other.
+heading (as many pieces as the first of a coarser net is long, if that is refined). Newton's method with exact second
+derivatives, the curvature of the part among them, in two unknowns a node. A step that does not lower the energy is
+followed by a second one, which takes back what that has stretched; if that is in vain it is shortened, then damped
+(Levenberg). Minimal is the net when the forces along the surface vanish against those that balance each other.
 """
 
 from __future__ import annotations
@@ -93,6 +94,7 @@ def relax(problem: Problem, footing: Footing) -> Relaxed:
             way, place = step if downhill else -step, Place(x, footing, now)
             moved = _searched(problem, fronts, place, equations, way, damping, n >= wary)
             moved = moved if downhill or (moved is not None and moved[0].energy < now) else None
+            wary = n + 1 + WARY if moved is None and n >= wary else wary
         if moved is None and damping > MOST_DAMPING:
             break
         if moved is None:

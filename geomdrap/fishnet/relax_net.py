@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -53,13 +52,16 @@ def laid_on(net: Net, near: Net) -> np.ndarray:
 
 
 def _turned(points: np.ndarray, some: np.ndarray, there: np.ndarray) -> np.ndarray:
-    """Points (..., 3) moved as a rigid body, as ``some`` (n, 3) of them best come to lie ``there`` (n, 3)."""
+    """Points (..., 3) moved as a rigid body, as ``some`` (n, 3) of them best come to lie ``there`` (n, 3).
+
+    They are not turned where those lie on one line, for which many turns are as good.
+    """
     from scipy.spatial.transform import Rotation
 
     middle, other = some.mean(axis=0), there.mean(axis=0)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # of points on a line, for which many turns are as good
-        turn, _ = Rotation.align_vectors(there - other, some - middle)
+    if min(np.linalg.matrix_rank(x, tol=1e-6 * (1.0 + np.abs(x).max())) for x in (some - middle, there - other)) < 2:
+        return np.asarray(points + (other - middle))
+    turn, _ = Rotation.align_vectors(there - other, some - middle)
     return np.asarray(other + (points - middle) @ turn.as_matrix().T)
 
 

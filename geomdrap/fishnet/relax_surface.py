@@ -29,7 +29,7 @@ _MADE: WeakKeyDictionary[Surface, np.ndarray] = WeakKeyDictionary()
 
 
 def smooth_normals(surface: Surface) -> np.ndarray:
-    """Unit normals (m, 3, 3) at the corners of the facets: of those at the vertex that are no edge away."""
+    """Unit normals (m, 3, 3) at the corners of the facets: the mean of those there that are no edge away."""
     if surface not in _MADE:
         mesh = surface.triangles, surface.normals, surface.corner_angles
         _MADE[surface] = _smoothed(*mesh, len(surface.points))

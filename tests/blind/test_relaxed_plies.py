@@ -10,7 +10,7 @@ import pytest
 from geomdrap.blind import energy
 from geomdrap.blind.ply import lay
 from geomdrap.blind.recipe import Recipe
-from geomdrap.blind.relax import _Problem
+from geomdrap.blind.relax import _joined, _Problem
 from geomdrap.blind.shear import node_shear
 from geomdrap.blind.terms import bowl, bump
 from geomdrap.blind.tools import Tool
@@ -117,3 +117,14 @@ def test_a_node_that_hangs_on_one_yarn_is_left_out_and_the_net_comes_to_rest():
     forces = [problem.linear(plan[known])[2].reshape(-1, 2) for plan in (ply.plan, geometric.plan)]
     rest, start = (np.delete(force, problem.first, axis=0) for force in forces)  # there the heading is held, by 1e6
     assert np.linalg.norm(rest) < 1e-4 * np.linalg.norm(start)
+
+
+def test_cells_that_hang_on_one_yarn_or_one_node_are_left_out():
+    known = np.zeros((15, 15), bool)
+    known[4:11, 4:11] = True  # beside the seed, (7, 7)
+    known[11, 7] = known[12:15, 6:9] = True  # beyond a bare yarn
+    known[10:13, 10:13] = True  # joined at one node
+    want = np.zeros_like(known)
+    want[4:11, 4:11] = True
+    np.testing.assert_array_equal(_joined(known), want)
+    assert not _joined(np.eye(15, dtype=bool)).any()

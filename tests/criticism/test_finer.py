@@ -124,7 +124,10 @@ def test_rivals_on_a_coarse_net_are_told_apart_by_finer_ones(monkeypatch, behind
         return rested, replace(model, fit=replace(model.fit, residual=residual))
 
     monkeypatch.setattr(last, "final", final)
-    assert list(last.told_apart(meant, of, names)) == left
+    ends, seen = last.told_apart(meant, of, names)
+    assert list(ends) == left
+    gains = {e.name: e.gain for e in seen.evidence}
+    assert gains[names[1]] - gains[names[0]] == pytest.approx(-1.0 if coarse else behind)  # confidence weighs by these
 
 
 SLOPES = np.random.default_rng(1).normal(size=(POINTS, 4))  # of the placement and an offset

@@ -1,5 +1,7 @@
 """The search: where effects are looked at, in which order they are tried, and what is left out of a second search."""
 
+from dataclasses import replace
+from importlib import import_module
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +12,7 @@ from geomdrap.criticism.cleaned import cleaned, spoilt
 from geomdrap.criticism.diagnose import _teller
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fit import Fit
-from geomdrap.criticism.model import Fitted, Look, Model, again
+from geomdrap.criticism.model import Fitted, Look, Model, again, further
 from geomdrap.criticism.start import Glance, glance, start_values
 from geomdrap.measurement.outliers import Outlier
 
@@ -136,6 +138,7 @@ def test_models_known_before_readings_were_dropped_are_fitted_again_only_near_th
         trial_at("locking", [0.0, 0.0, 0.0, 20.0], 600.0),
         trial_at("bridging", [3.0, 0.0, 0.0, 0.0], 1001.0),
     ]
+    idle = replace(known[3], looked_at_only=True)
     fitted_again = []
     monkeypatch.setattr("geomdrap.criticism.model.refit", lambda _, __, old: fitted_again.append(old) or old)
     got = again(None, whiten, base, known)
@@ -143,6 +146,9 @@ def test_models_known_before_readings_were_dropped_are_fitted_again_only_near_th
     assert got[2] is known[2]
     np.testing.assert_array_equal(got[3].values, [9.0, 0.0, 0.0, 0.0])  # what explains nothing is the base
     assert got[3].fit.chi2 == base.fit.chi2 and (got[3].fit.residual == 0.7).all()
+    fitted_again.clear()
+    assert again(None, whiten, base, [idle])[0].looked_at_only  # where nothing is found, all are as good as the base
+    assert not fitted_again
 
 
 def test_a_model_is_compared_with_the_values_that_are_left():
@@ -171,3 +177,30 @@ def test_a_two_sided_costly_effect_is_looked_for_at_other_headings_if_the_base_w
     assert ({-16.0, 8.0} <= set(headings)) == looked
     if looked:
         np.testing.assert_allclose(start, [0.0, 0.0, 8.0, 0.2], atol=0.5)
+
+
+def test_what_was_only_looked_at_is_not_fitted_on():
+    idle = replace(trial_at("shear-stiffness", [0.0, 0.0, 0.0, 0.0], 900.0), looked_at_only=True)
+    assert further(None, whiten, idle) is idle
+
+
+def test_a_second_search_knows_each_effect_once(monkeypatch):
+    """The base of a second round is a trial of the first."""
+    base, one = Fitted(Model(()), Fit(np.zeros(3), np.zeros(POINTS), PLACES, 1.0)), trial_at("slip", [0.0] * 4, 0.5)
+    two = replace(one, model=Model(("slip", "locking")))
+    rounds = [SimpleNamespace(base=base, trials=(one,)), SimpleNamespace(base=one, trials=(two,), closest=two)]
+    mask = np.ones((POINTS, 1), bool)
+    whole = Experiment(None, None, None, AT, None, ("shear",), mask, np.ones(POINTS), np.zeros(POINTS), (1.0, 2.0))
+    asked = []
+
+    def searched(experiment, names, progress, passed=0, known=()):
+        asked.append([m.model.effects for m in known])
+        return rounds
+
+    module = import_module("geomdrap.criticism.diagnose")
+    monkeypatch.setattr(module, "prepare", lambda *_: (whole, ()))
+    monkeypatch.setattr(module, "search", searched)
+    monkeypatch.setattr(module, "cleaned", lambda *_: whole.without(np.arange(POINTS)[:, None] < 2))
+    monkeypatch.setattr(module, "conclude", lambda *_: None)
+    module.diagnose(None, None)
+    assert asked == [[], [(), ("slip",), ("slip", "locking")]]

@@ -1,5 +1,7 @@
 """Nets that turn as a whole about their seed, and nets that refine a coarser one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -63,3 +65,15 @@ def test_a_net_is_laid_on_a_coarser_one_between_its_nodes(pitch):
     inside = (np.abs(fine.u)[:, None] < 40.0) & (np.abs(fine.v) < 40.0)
     assert apart[inside].max() < 0.1
     assert np.nanmax(apart) < 1.0
+
+
+def test_nets_that_share_one_node_or_a_line_are_not_turned():
+    plane = shapes.plane(120.0, 100.0, 10.0)
+    large = gd.drape(plane, (0.0, 0.0, 0.0), 0.0, 10.0, reach=(40.0, 30.0))
+    moved = large.lattice + [0.0, 3.0, 0.0]
+    for keep in (np.s_[4:5, 3:4], np.s_[:, 3:4]):
+        lattice = np.full(moved.shape, np.nan)
+        lattice[keep] = moved[keep]
+        start = laid_on(large, replace(large, points=lattice, lattice=lattice))
+        known = np.isfinite(large.lattice[..., 0])
+        np.testing.assert_allclose(start[known] - large.lattice[known], [[0.0, 3.0, 0.0]] * known.sum(), atol=1e-9)
