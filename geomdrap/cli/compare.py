@@ -88,7 +88,7 @@ def compare(
     with Progress(quiet) as progress:
         progress.step("Reading")
         effects = effects_of(effect_texts, model, plugins)
-        ready = read_asked(part, measured, **asked)
+        ready = read_asked(part, measured, model=model, **asked)
         announce_compilation(quiet)
         progress.step("Comparing")
         result = gd.compare(ready.surface, ready.measurement, **ready.laid, effects=effects, smooth=not facets)

@@ -12,6 +12,7 @@ from click.core import ParameterSource
 from geomdrap.cli.elements import fe_mesh_of, notes_on, ply_on
 from geomdrap.cli.folders import check_folder
 from geomdrap.cli.lazy import COMMAND
+from geomdrap.cli.measured import said_of_model
 from geomdrap.cli.options import (
     cloth_options,
     cut_option,
@@ -139,7 +140,7 @@ def drape(
         files = write_all(result, folder, outputs, progress.share, Extras(command, elements, ply_thickness, paper))
     left = of_an_earlier_run(left_over(folder, files.values()) if files else [], folder)
     more = (*notes_on(elements, outputs), *left)
-    taken = [f"{' and '.join(meant)} of the ply are those of {asked['model'].name}"] if meant else []
+    taken = [said_of_model(list(meant), asked["model"])] if meant else []
     say((*result.warnings, *more), (*taken, *result.net.notes), quiet)
     if as_json:
         document = as_dict(result, files)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -134,10 +134,15 @@ def read_asked(
     mark_spacing: tuple[float, float] | None,
     mark_origin: tuple[float, float] | None,
     project: bool,
+    model: Path | None = None,
     **given: Any,
 ) -> Asked:
-    """Read set-up, measurement and part, in that order: what is quick to refuse comes first."""
+    """Read set-up, measurement and part, in that order: what is quick to refuse comes first.
+
+    What neither options nor the set-up give is that of the ply to which a ``model`` was fitted, where it says.
+    """
     import geomdrap as gd
+    from geomdrap.effects import read_layup
     from geomdrap.measurement import Setup
 
     known = gd.read_setup(setup) if setup is not None else Setup()
@@ -149,16 +154,31 @@ def read_asked(
         mark_origin=mark_origin or known.mark_origin or (0.0, 0.0),
     )
     surface = gd.read_surface(part, unit=unit, tolerance=tolerance, flip=flip)
-    laid, notes = _laid(known, given)
-    return Asked(surface, measurement, {**laid, "project": project}, notes)
+    meant = read_layup(model) if model is not None else {}
+    laid, taken, notes = _laid(known, given, meant)
+    if taken and model is not None:
+        notes = (said_of_model(taken, model), *notes)
+    return Asked(surface, measurement, {**laid, "project": project or "origin" in taken}, notes)
 
 
-def _laid(known: Setup, given: dict[str, Any]) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """Keywords of `compare` from options, else the set-up, else defaults, which are said."""
+def said_of_model(taken: Sequence[str], model: Path) -> str:
+    """That something of how the ply lies is taken from a model."""
+    return f"{' and '.join(taken)} of the ply {'is that' if len(taken) == 1 else 'are those'} of {model.name}"
+
+
+def _laid(
+    known: Setup, given: dict[str, Any], meant: dict[str, Any]
+) -> tuple[dict[str, Any], list[str], tuple[str, ...]]:
+    """Keywords of `compare` from options, else the set-up, else what was ``meant``, else defaults, which are said.
+
+    With them the names of those that were meant.
+    """
     laid = {name: getattr(known, name) if value is None else value for name, value in given.items()}
+    taken = [name for name in meant if name in laid and laid[name] is None]
+    laid.update({name: meant[name] for name in taken})
     notes = []
     for name, default, words in (("origin", "centroid", "the area centroid"), ("angle", 0.0, "0 degrees")):
         if laid[name] is None:
             laid[name] = default
             notes.append(f"{name} not given (--{name}, or --setup): {words} is taken")
-    return laid, tuple(notes)
+    return laid, taken, tuple(notes)

@@ -17,7 +17,7 @@ from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
 from geomdrap.measurement.match import Matched, match
 from geomdrap.measurement.noise import Noise, noise_of, noise_of_directions, repeats_of
 from geomdrap.measurement.outliers import Outlier, find_outliers
-from geomdrap.measurement.plausible import check_labels, require_on_part
+from geomdrap.measurement.plausible import looks_wrong, require_on_part
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -123,7 +123,13 @@ def compare_net(
         trusted=_trusted(matched, outliers),
         places=places_of(net, matched),
         notes=(*net.notes, *measurement.notes),
-        warnings=(*net.warnings, *measurement.warnings, *said, *check_labels(net, measurement), *_words(outliers)),
+        warnings=(
+            *net.warnings,
+            *measurement.warnings,
+            *said,
+            *looks_wrong(net, measurement, matched),
+            *_words(outliers),
+        ),
     )
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from geomdrap.criticism.cleaned import cleaned, outliers_of
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
-from geomdrap.criticism.evidence import alike_in_what_they_leave, rivals, says_the_same
+from geomdrap.criticism.evidence import Evidence, alike_in_what_they_leave, rivals, says_the_same
 from geomdrap.criticism.experiment import Experiment, Layup, flatten
 from geomdrap.criticism.final import final, said_of_coarser, told_apart
 from geomdrap.criticism.jackknife import widened
@@ -275,8 +275,14 @@ def _confidence(verdict: str, rounds: Sequence[Round], names: Sequence[str], lef
         return 1.0 - min(left.p_value, 1.0)
     last = rounds[max(len(names) - 1, 0)]
     price = float(np.log(last.rows.sum()))
-    others = [e for e in last.evidence if e.name in names or not says_the_same(e, last.evidence)]
+    others = [e for e in last.evidence if e.name in names or _says_another_thing(e, names, last.evidence)]
     scores = {e.name: e.gain - e.unknowns * price for e in others}
     own = scores.pop(names[-1]) if names else 0.0
     rest = [*scores.values(), 0.0] if names else list(scores.values())
     return float(1.0 / (1.0 + sum(np.exp(min(0.5 * (s - own), 50.0)) for s in rest)))
+
+
+def _says_another_thing(one: Evidence, names: Sequence[str], all_of: Sequence[Evidence]) -> bool:
+    """Whether an effect that was not found says another thing than those that were, with values that can be."""
+    with_more = bool(names) and names[-1] in one.includes
+    return one.in_range and not with_more and not says_the_same(one, all_of)

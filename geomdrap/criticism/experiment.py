@@ -13,6 +13,7 @@ from geomdrap.criticism.kept import kept
 from geomdrap.criticism.smooth import Split, smoothed
 from geomdrap.fishnet import Effect, Fabric, Net, drape
 from geomdrap.fishnet.effect import fabric_with, in_order, surface_with
+from geomdrap.fishnet.held_warp import HeldWarp
 from geomdrap.fishnet.relax_net import UNREST
 
 if TYPE_CHECKING:
@@ -135,6 +136,11 @@ class Experiment:
             self.last[names] = acting, net
         return net
 
+    @property
+    def held(self) -> float:
+        """The length of warp, mm, that holds the heading of relaxed nets: a piece of the coarsest."""
+        return self.coarser or self.pitches[1]
+
     def _refined(self, effects: Sequence[Effect], pitch: float, coarser: float) -> Net:
         """A net of what is costly, from a coarser one if that is of least energy and at rest."""
         if fabric_with(effects, Fabric()).relaxes:
@@ -146,6 +152,8 @@ class Experiment:
 
     def _draped(self, effects: Sequence[Effect], pitch: float, near: Net | None = None) -> Net:
         lay, (surface, others) = self.layup, self._surface_under(effects)
+        if any(e.costly for e in others):
+            others = [*others, HeldWarp(length=self.held)]
         return drape(
             surface,
             lay.origin,
@@ -177,6 +185,11 @@ class Experiment:
         first, pitch = self.pitches
         half = max(0.5 * pitch, first)
         return replace(self, pitches=(first, half), coarser=pitch if half < pitch else None, coarseness={})
+
+    def as_meant(self, effects: Sequence[Effect]) -> dict[str, str | float | tuple[float, ...]]:
+        """How the ply was meant to lie, as a model file with effects holds it: with what relaxed nets depend on."""
+        nets = {"pitch": self.pitches[1], "held": self.held} if any(e.costly for e in effects) else {}
+        return {**self.layup.as_meant(), **nets}
 
     def without(self, drop: np.ndarray) -> Experiment:
         """The same experiment without the values ``drop`` (n, c) bool."""

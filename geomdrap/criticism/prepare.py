@@ -15,7 +15,7 @@ from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
 from geomdrap.measurement.match import Matched, match
 from geomdrap.measurement.noise import REPEATS, RESIDUAL, Noise, noise_of, noise_of_directions, repeats_of
 from geomdrap.measurement.outliers import find_outliers
-from geomdrap.measurement.plausible import check_labels, require_on_part
+from geomdrap.measurement.plausible import looks_wrong, require_on_part
 
 if TYPE_CHECKING:
     from geomdrap.measurement import Measurement
@@ -70,7 +70,7 @@ def prepare(
             f"{measurement.source}: the model predicts none of the {len(measurement)} points "
             f"({found.reason[0]}); check the origin, the heading and the units of the table"
         )
-    warnings += check_labels(net, measurement)
+    warnings += looks_wrong(net, measurement, found)
     at = np.column_stack([found.u, found.v])
     frames = np.stack([found.warp, np.cross(found.normal, found.warp), found.normal], axis=1)
     channels, values = measured_table(measurement, found, frames)

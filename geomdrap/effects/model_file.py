@@ -10,8 +10,10 @@ from typing import Any
 from geomdrap.effects.registry import asked
 from geomdrap.errors import EffectError
 from geomdrap.fishnet import Effect
+from geomdrap.fishnet.held_warp import HeldWarp
 
 FORMAT = "geomdrap.model/1"
+MEANT, HELD = ("origin", "angle", "reference", "pitch"), ("held",)
 
 
 def write_model(
@@ -22,7 +24,8 @@ def write_model(
 ) -> None:
     """Write effects (the placement among them) to a model file; ``notes`` become comments at its head.
 
-    ``layup`` says how the ply was meant to lie that the effects were fitted to: origin, angle, reference.
+    ``layup`` says how the ply was meant to lie that the effects were fitted to: origin, angle, reference; of relaxed
+    nets also the pitch, mm, and the length of warp that was held.
 
     Raises EffectError for an effect without a name: it could not be found again.
     """
@@ -52,7 +55,7 @@ def _unit(unit: str) -> str:
 
 
 def read_model(path: str | Path) -> tuple[Effect, ...]:
-    """The effects of a model file, in its order.
+    """The effects of a model file, in its order, and a ``HeldWarp`` where its lay-up says how much was held.
 
     Raises EffectError where it is no model file of a known format, names unknown effects or values, or an effect
     without the values that it needs to act.
@@ -61,11 +64,12 @@ def read_model(path: str | Path) -> tuple[Effect, ...]:
     entries = document.get("effect", [])
     if not (isinstance(entries, list) and all(isinstance(entry, dict) for entry in entries)):
         raise EffectError(f"model {path}: write each effect as a table [[effect]]")
-    return tuple(_effect_of(entry, path) for entry in entries)
+    held = read_layup(path, HELD).get("held")
+    return (*(_effect_of(entry, path) for entry in entries), *([HeldWarp(length=held)] if held else []))
 
 
-def read_layup(path: str | Path) -> dict[str, Any]:
-    """How the ply was meant to lie that a model file was fitted to: ``origin``, ``angle``, ``reference``, if it says.
+def read_layup(path: str | Path, wanted: Sequence[str] = MEANT) -> dict[str, Any]:
+    """How the ply was meant to lie that a model file was fitted to: ``origin``, ``angle`` ..., if it says.
 
     Raises EffectError where it is no model file, or holds something else there.
     """
@@ -74,15 +78,17 @@ def read_layup(path: str | Path) -> dict[str, Any]:
         raise EffectError(f"model {path}: write the lay-up as a table [layup]")
     out: dict[str, Any] = {}
     for key, value in found.items():
-        if key == "angle" and isinstance(value, (int, float)):
+        if key in ("angle", "pitch", "held") and isinstance(value, (int, float)) and (key == "angle" or value > 0.0):
             out[key] = float(value)
         elif key in ("origin", "reference") and _is_point(value):
             out[key] = tuple(float(x) for x in value)
         elif key == "origin" and isinstance(value, str):
             out[key] = value
         else:
-            raise EffectError(f"model {path}: [layup] holds origin, angle and reference, not {key} = {value!r}")
-    return out
+            raise EffectError(
+                f"model {path}: [layup] holds origin, angle, reference, pitch and held, not {key} = {value!r}"
+            )
+    return {key: value for key, value in out.items() if key in wanted}
 
 
 def _is_point(value: Any) -> bool:

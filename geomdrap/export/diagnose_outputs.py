@@ -48,8 +48,8 @@ def write_improvement(improvement: Improvement, model: Path) -> dict[str, Path]:
 
     files = {"model": model, "json": model.parent / "improve.json", "png": model.parent / "improve.png"}
     with whole_folder(model.parent) as scratch:
-        layup = improvement.diagnosis.experiment.layup.as_meant()
-        write_model(scratch / model.name, improvement.effects, improvement.notes, layup)
+        meant = improvement.diagnosis.experiment.as_meant(improvement.effects)
+        write_model(scratch / model.name, improvement.effects, improvement.notes, meant)
         write_whole(scratch / "improve.json", as_text(plain(improvement.as_dict(model.name))))
         improve_picture.write(improvement, scratch / "improve.png")
     return files

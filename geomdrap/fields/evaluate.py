@@ -57,7 +57,7 @@ def evaluate(
         bare=bare_regions(trimmed),
         statistics=statistics(net, trimmed, shear, limit),
         checks=checks,
-        warnings=(*net.warnings, *doubts(flat, checks, areas(trimmed)), *_tear(net, trimmed)),
+        warnings=(*net.warnings, *doubts(flat, checks, areas(trimmed), stretch(net)), *_tear(net, trimmed)),
         trimmed=trimmed,
         roll=None,
     )
@@ -74,8 +74,16 @@ def _tear(net: Net, trimmed: Trimmed) -> tuple[str, ...]:
     )
 
 
-def doubts(flat: FlatPattern, checks: Checks, area: Areas) -> tuple[str, ...]:
-    """Sentences on what of the result should not be trusted as it is."""
+def stretch(net: Net) -> float:
+    """How much larger than flat the fabric is where its yarns are strained and nothing shears, 1 for most nets."""
+    if net.sides is None:
+        return 1.0
+    warp, weft = net.sides[0] / np.diff(net.u)[:, None], net.sides[1] / np.diff(net.v)[None, :]
+    return float(np.nanmean(warp) * np.nanmean(weft)) if np.isfinite(warp).any() and np.isfinite(weft).any() else 1.0
+
+
+def doubts(flat: FlatPattern, checks: Checks, area: Areas, stretched: float = 1.0) -> tuple[str, ...]:
+    """Sentences on what of the result should not be trusted as it is; ``stretched`` as from ``stretch``."""
     found = []
     crossings, (u, v) = self_crossings((*flat.outer, *flat.inner))
     if crossings:
@@ -89,7 +97,7 @@ def doubts(flat: FlatPattern, checks: Checks, area: Areas) -> tuple[str, ...]:
             f"shear and curvature of the part differ by {checks.curvature_residual:.1f}°: the pitch is coarse for "
             "the radii of the part; halve it (on a mesh that is fine enough) and compare"
         )
-    if area.fabric < LEAST_FABRIC * area.draped:
+    if stretched * area.fabric < LEAST_FABRIC * area.draped:
         found.append(
             f"the fabric's area of {area.fabric:.6g} mm² is less than the {area.draped:.6g} mm² that it covers, "
             "which cannot be: the pitch is too coarse for thin walls or sharp edges of the part; use a smaller one"

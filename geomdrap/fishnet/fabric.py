@@ -21,7 +21,8 @@ class Fabric:
     left; ``slip``, the exponent s with which weft sides grow as 1/cos(γ)^s; ``shear_stiffness`` as a share of the
     yarns' own, ``locking_angle`` degrees, ``shear_asymmetry`` from -1 to 1 and ``bending_length`` mm, the root of the
     yarns' stiffness in bending in the surface over the stiffness in shear, with any of which the net is relaxed to
-    least energy (None: it is not).
+    least energy (None: it is not); ``held_length``, mm of warp from the seed that then keep their heading (None: one
+    piece).
     Raises DrapeError for angles out of range.
     """
 
@@ -38,6 +39,7 @@ class Fabric:
     locking_angle: float | None = None
     shear_asymmetry: float | None = None
     bending_length: float | None = None
+    held_length: float | None = None
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.limit_angle) and 0.0 < self.limit_angle <= 90.0):

@@ -25,11 +25,9 @@ if TYPE_CHECKING:
 def relaxed(net: Net, near: Net | None = None) -> Net:
     """The net of least energy of ``net.fabric``, from the geometric net or from where a net much like it lies.
 
-    A coarser one is refined: what holds its heading, its first warp piece, holds that of the finer net, too, which
-    would turn on a shorter piece. A warning of the net says so where the forces do not come into balance.
+    A warning of the net says so where the forces do not come into balance.
     """
-    finer = 1 if near is None else max(round(near.pitch / net.pitch), 1)
-    problem = problem_of(net, finer)
+    problem = problem_of(net)
     start = problem.footing if near is None else placed(problem, laid_on(net, near))
     return as_net(net, problem, relax(problem, start))
 

@@ -76,19 +76,19 @@ def law_of(fabric: Fabric) -> Law:
     )
 
 
-def problem_of(net: Net, pieces: int = 1) -> Problem:
-    """The problem of relaxing a net of its fabric, ``pieces`` and errors as of ``pose``."""
-    problem = pose(net, law_of(net.fabric), pieces)
+def problem_of(net: Net) -> Problem:
+    """The problem of relaxing a net of its fabric. Raises DrapeError where the seed has no cell beside it."""
+    problem = pose(net, law_of(net.fabric))
     if net.fabric.shear_stiffness or net.fabric.shear_asymmetry or net.fabric.bending_length:
         return problem
     # without a stiffness in shear many nets are minimal, and yarns under pressure buckle from node to node
     return replace(problem, target=chord_sines(problem.x0, problem.valid))
 
 
-def pose(net: Net, law: Law, pieces: int = 1) -> Problem:
-    """The problem of relaxing a net under a law, its heading held over so many ``pieces`` of the warp.
+def pose(net: Net, law: Law) -> Problem:
+    """The problem of relaxing a net under a law, its heading held over the fabric's ``held_length`` where it goes.
 
-    Over fewer where there are fewer. Raises DrapeError where the seed has no cell beside it.
+    Raises DrapeError where the seed has no cell beside it.
     """
     lattice, valid = net.lattice, net.lattice_valid
     moves = np.zeros(net.face.shape, bool)
@@ -100,7 +100,7 @@ def pose(net: Net, law: Law, pieces: int = 1) -> Problem:
     weft[:-1] |= valid
     weft[1:] |= valid
     i, j = int(np.abs(net.u).argmin()), int(np.abs(net.v).argmin())
-    guided = _guided(warp[:, j], i, pieces)
+    guided = _guided(warp[:, j], i, max(round((net.fabric.held_length or 0.0) / net.pitch), 1))
     i_moves, j_moves = np.nonzero(moves)
     nodes = i_moves, j_moves
     number = np.full(moves.shape, -1)

@@ -11,6 +11,7 @@ from geomdrap.measurement.marks import mark_spacing
 
 if TYPE_CHECKING:
     from geomdrap.fishnet import Net
+    from geomdrap.measurement.match import Matched
     from geomdrap.measurement.measurement import Measurement
     from geomdrap.surface import Surface
 
@@ -38,6 +39,20 @@ OTHER_LABELS = (
     ("u and v are swapped and both run the other way", (0, -1, -1, 0)),
 )
 """What else the labels may be: words, and the matrix that turns the labels read into the right ones."""
+
+
+OTHER_UNITS = (
+    ("u and v are in inches, and x, y, z are not", 25.4),
+    ("u and v are in m, and x, y, z are not", 1000.0),
+    ("x, y, z are in inches, and u and v are not", 1.0 / 25.4),
+    ("x, y, z are in m, and u and v are not", 1e-3),
+)
+"""What else the unit of the labels may be: words, and the factor that turns those read into the right ones."""
+
+ANTI, ALIKE = -0.5, 0.7
+"""Correlations with the predicted shear: of angles with the other sign, and of such in another unit."""
+FEWEST, CERTAIN = 10, 4.0
+"""Angles from which on a correlation says something, and the standard deviations from chance that it is to be."""
 
 
 def require_on_part(surface: Surface, measurement: Measurement) -> tuple[str, ...]:
@@ -82,6 +97,11 @@ def _labels_agree(measurement: Measurement, factor: float) -> bool:
     return bool(0.5 < extent * factor / max(labels, 1e-300) < 1.5)
 
 
+def looks_wrong(net: Net, measurement: Measurement, found: Matched) -> tuple[str, ...]:
+    """Warnings where labels or shear angles are probably others than the table says."""
+    return (*check_labels(net, measurement), *check_shear(measurement.shear, found.shear, measurement.source))
+
+
 def check_labels(net: Net, measurement: Measurement) -> tuple[str, ...]:
     """A warning where other labels (swapped, mirrored, counted from another mark) fit the net far better."""
     if measurement.u is None or measurement.v is None:
@@ -94,6 +114,10 @@ def check_labels(net: Net, measurement: Measurement) -> tuple[str, ...]:
         distance = _typical_distance(net, measurement.points, labels @ np.reshape(matrix, (2, 2)).T)
         if distance < best:
             best, words = distance, text
+    for text, factor in OTHER_UNITS:
+        distance = _typical_distance(net, measurement.points, labels * factor)
+        if distance < best:
+            best, words = distance, text
     for text, shift in _other_counts(step):
         distance = _typical_distance(net, measurement.points, labels + shift)
         if distance < best:
@@ -104,6 +128,25 @@ def check_labels(net: Net, measurement: Measurement) -> tuple[str, ...]:
         f"{measurement.source}: {LOOKS_WRONG} {words}: half of the points would then lie within {best:.3g} mm of "
         f"the prediction, instead of {present:.3g} mm",
     )
+
+
+def check_shear(measured: np.ndarray | None, predicted: np.ndarray, source: str) -> tuple[str, ...]:
+    """A warning where shear angles (n,), degrees, look as if they had the other sign, or were in radians."""
+    if measured is None:
+        return ()
+    known = np.isfinite(measured) & np.isfinite(predicted)
+    a, b = measured[known], predicted[known]
+    if known.sum() < FEWEST or min(a.std(), b.std()) <= 0.0:
+        return ()
+    alike, ratio = float(np.corrcoef(a, b)[0, 1]), float(a.std() / b.std())
+    if alike < ANTI and alike * np.sqrt(len(a)) < -CERTAIN:
+        return (
+            f"{source}: {LOOKS_WRONG} the shear has the other sign: it goes against what is predicted (correlation "
+            f"{alike:.2f}); positive is where the angle between warp and weft becomes less than 90 degrees",
+        )
+    if alike > ALIKE and 0.3 < ratio * 180.0 / np.pi < 3.0:
+        return (f"{source}: {LOOKS_WRONG} the shear is in radians: it is {ratio:.3f} times what is predicted",)
+    return ()
 
 
 def _other_counts(step: tuple[float | None, float | None]) -> list[tuple[str, np.ndarray]]:

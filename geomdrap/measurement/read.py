@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from difflib import get_close_matches
 from pathlib import Path
 
 import numpy as np
 
 from geomdrap.errors import MeasurementError
-from geomdrap.measurement.columns import LENGTHS, Chosen, choose_columns
+from geomdrap.measurement.columns import COLUMNS, LENGTHS, Chosen, choose_columns
 from geomdrap.measurement.measurement import Measurement
 from geomdrap.measurement.table import Table, number_of, read_table
 
@@ -17,6 +18,12 @@ UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 SIGMAS = ("sigma_xyz", "sigma_shear", "sigma_direction")
 OPTIONAL = ("shear", *SIGMAS, "warp_x", "warp_y", "warp_z", "weft_x", "weft_y", "weft_z")
 """Quantities that may be open (an empty cell, or nan) in some rows."""
+
+
+def _unused(heading: str) -> str:
+    """The heading of a column that is not used, with the name that it is perhaps to have."""
+    near = get_close_matches(heading.strip().lower(), [name for name in COLUMNS if len(name) > 1], 1, 0.7)
+    return f"{heading} (is that {near[0]}?)" if near else heading
 
 
 def read_measurement(
@@ -44,7 +51,7 @@ def read_measurement(
         cells[name] = cells[name] * UNITS[unit]
     u, v, said = _fabric_coordinates(table.source, cells, mark_spacing, mark_origin)
     if chosen.unused:
-        notes += (f"{table.source}: columns not used: {', '.join(chosen.unused)}",)
+        notes += (f"{table.source}: columns not used: {', '.join(map(_unused, chosen.unused))}",)
     return Measurement(
         source=table.source,
         points=np.column_stack([cells["x"], cells["y"], cells["z"]]),

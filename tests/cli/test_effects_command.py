@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
@@ -142,3 +143,54 @@ def test_a_model_drapes_the_ply_that_it_was_fitted_to_unless_told_otherwise(run,
     told = json.loads(run("drape", "saddle.stl", "--angle", "45", *options).stdout)
     assert told["angle"] == 45.0
     assert told["origin"] == drape["origin"]
+
+
+def test_a_model_of_a_relaxed_net_is_drawn_with_its_pitch_and_held_over_its_length(run, tmp_path):
+    run("sample", "saddle")
+    text = 'format = "geomdrap.model/1"\n[layup]\nangle = 20.0\npitch = 12.0\n%s[[effect]]\nname = "shear-stiffness"\nratio = 0.001\n'
+    (tmp_path / "model.toml").write_text(text % "held = 24.0\n")
+    (tmp_path / "short.toml").write_text(text % "")
+    drapes = {}
+    for model in ("model.toml", "short.toml"):
+        drapes[model] = run("drape", "saddle.stl", "--outputs", "json", "--json", "--model", model)
+    both = [json.loads(drape.stdout) for drape in drapes.values()]
+    assert [one["pitch"] for one in both] == [12.0, 12.0]
+    assert both[0]["effects"][-1]["name"] == "held-warp"
+    assert "angle and pitch of the ply are those of model.toml" in drapes["model.toml"].stderr
+    told = json.loads(
+        run("drape", "saddle.stl", "--pitch", "15", "--outputs", "json", "--json", "--model", "model.toml").stdout
+    )
+    assert told["pitch"] == 15.0
+
+
+def test_a_comparison_takes_the_ply_of_a_model_unless_told_otherwise(run, tmp_path):
+    run("sample", "saddle")
+    surface = gd.read_surface(tmp_path / "saddle.stl")
+    net = gd.drape(surface, (10.0, -5.0, 0.0), 20.0, 15.0, project=True)
+    u, v = (a.ravel() for a in np.meshgrid(np.arange(-45.0, 46.0, 15.0), np.arange(-45.0, 46.0, 15.0)))
+    points, _ = net.interpolate(u, v)
+    rows = np.column_stack([points, u, v])[np.isfinite(points[:, 0])]
+    np.savetxt(tmp_path / "marks.csv", rows, delimiter=",", header="x,y,z,u,v", comments="", fmt="%.6f")
+    origin = ", ".join(f"{x:.6f}" for x in net.origin)
+    (tmp_path / "model.toml").write_text(
+        f'format = "geomdrap.model/1"\n[layup]\norigin = [{origin}]\nangle = 20.0\n[[effect]]\nname = "slip"\ncoefficient = 0.01\n'
+    )
+    found = run(
+        "compare",
+        "saddle.stl",
+        "marks.csv",
+        "--model",
+        "model.toml",
+        "--sigma-xyz",
+        "0.2",
+        "--outputs",
+        "none",
+        "--json",
+    )
+    assert json.loads(found.stdout)["position"]["rms"] < 0.5
+    assert "origin and angle of the ply are those of model.toml" in found.stderr
+    other = run(
+        "compare", "saddle.stl", "marks.csv", "--model", "model.toml", "--angle", "35", "--outputs", "none", "--json"
+    )
+    assert json.loads(other.stdout)["position"]["rms"] > 2.0
+    assert "origin of the ply is that of model.toml" in other.stderr

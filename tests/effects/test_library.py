@@ -258,6 +258,10 @@ def test_a_model_file_says_how_the_ply_was_meant_to_lie(tmp_path):
     assert gd.effects.read_model(file)[0].values == {"coefficient": 0.3}
     gd.effects.write_model(file, [], layup={"origin": "vertex:7", "angle": -5.0})
     assert gd.effects.read_layup(file) == {"origin": "vertex:7", "angle": -5.0}
+    gd.effects.write_model(file, [], layup={"angle": 5.0, "pitch": 4.0, "held": 8.0})
+    assert gd.effects.read_layup(file) == {"angle": 5.0, "pitch": 4.0}
+    held = gd.effects.read_model(file)[-1]
+    assert held.on_fabric(gd.Fabric()).held_length == 8.0
     gd.effects.write_model(file, [])
     assert gd.effects.read_layup(file) == {}
     file.write_text('format = "geomdrap.model/1"\n[layup]\nangle = "steep"\n')

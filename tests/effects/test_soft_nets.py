@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import geomdrap as gd
+from geomdrap.fishnet.held_warp import HeldWarp
 from geomdrap.fishnet.relax_net import laid_on
 from geomdrap.surface import shapes
 
@@ -23,9 +24,9 @@ def bumps():
     return gd.Surface(np.column_stack([x, y, z]), plane.triangles)
 
 
-def laid(part, pitch, near=None, angle=50.0):
+def laid(part, pitch, near=None, angle=50.0, held=()):
     soft = gd.effects.make("shear-stiffness", ratio=0.0027)
-    return gd.drape(part, (-2.3, 7.7, 30.0), angle, pitch, effects=[soft], project=True, near=near)
+    return gd.drape(part, (-2.3, 7.7, 30.0), angle, pitch, effects=[soft, *held], project=True, near=near)
 
 
 def rounds_of(net):
@@ -46,8 +47,8 @@ def test_a_soft_net_comes_to_rest_though_it_turns(bumps, angle, most):
 def test_a_refined_net_keeps_to_the_coarser_one(bumps):
     coarse = laid(bumps, 8.0)
     away = {}
-    for name, near in (("refined", coarse), ("alone", None)):
-        fine = laid(bumps, 4.0, near)
+    for name, near, held in (("refined", coarse, [HeldWarp(length=8.0)]), ("alone", None, [])):
+        fine = laid(bumps, 4.0, near, held=held)
         _, i, k = np.intersect1d(fine.u, coarse.u, return_indices=True)
         _, j, m = np.intersect1d(fine.v, coarse.v, return_indices=True)
         apart = np.linalg.norm(fine.points[np.ix_(i, j)] - coarse.points[np.ix_(k, m)], axis=2)
