@@ -60,6 +60,8 @@ def trim(net: Net, progress: Callable[[float], None] = lambda _: None) -> Trimme
     progress(0.7)
     cells += np.array([net.u[0], net.v[0]]) / net.pitch
     cells, kind, stopped = make_cuttable(net, mesh, cells, kind, stopped, reached)
+    if net.fabric.relaxes:  # such a net reached the rim before it came to rest: a smaller pitch is of no use
+        stopped = np.where(stopped == Status.TOO_NARROW, np.uint8(Status.DRAWN_IN), stopped)
     progress(0.9)
     at, share = cells * net.pitch, (kind > 0).astype(float)
     reason = np.where(kind > 0, np.uint8(Status.PRESENT), np.where(stopped > 0, stopped, np.uint8(Status.UNREACHED)))

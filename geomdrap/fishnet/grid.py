@@ -25,6 +25,7 @@ class Status(IntEnum):
     DOUBLED = 11
     SLIT = 12
     NEEDS_DART = 13
+    DRAWN_IN = 14
 
     @property
     def reason(self) -> str:
@@ -47,6 +48,7 @@ _REASONS = {
     Status.SLIT: "fabric from two sides meets here: a dart is needed",
     Status.NEEDS_DART: "folded: parts of the net lie on each other here, a dart or a cut is needed",
     Status.TOO_NARROW: "narrower than the pitch: use a smaller one",
+    Status.DRAWN_IN: "the net has turned or drawn in as it came to rest, and does not reach here",
 }
 
 

@@ -78,3 +78,9 @@ def test_nets_that_share_one_node_or_a_line_are_not_turned():
         start = laid_on(large, replace(large, points=lattice, lattice=lattice))
         known = np.isfinite(large.lattice[..., 0])
         np.testing.assert_allclose(start[known] - large.lattice[known], [[0.0, 3.0, 0.0]] * known.sum(), atol=1e-9)
+
+
+def test_what_a_net_that_turned_leaves_bare_is_not_called_narrow(bumps):
+    """A smaller pitch would not cover it: the command line must not be led to halve it."""
+    bare = gd.evaluate(laid(bumps, 8.0, angle=40.0)).bare
+    assert bare and all("has turned or drawn in" in region.reason for region in bare)
