@@ -17,16 +17,12 @@ from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Di
 from geomdrap.criticism.evidence import Evidence, alike_in_what_they_leave, rivals, says_the_same
 from geomdrap.criticism.experiment import Experiment, Layup, flatten
 from geomdrap.criticism.final import final, said_of_coarser, told_apart
+from geomdrap.criticism.fitted_on import refit
 from geomdrap.criticism.jackknife import widened
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
 from geomdrap.criticism.locked import LOCKING, doubted, locks, shear_stops
-from geomdrap.criticism.model import (
-    Fitted,
-    fit_placement,
-    refit,
-    unfitted,
-)
+from geomdrap.criticism.model import Fitted, fit_placement, unfitted
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round, judge_of, steps_of, try_effects
 from geomdrap.criticism.table import tried_of, values_of

@@ -12,8 +12,9 @@ import numpy as np
 
 from geomdrap.criticism.evidence import RIVAL_SHARE, Evidence, rivals
 from geomdrap.criticism.experiment import Experiment, restless
+from geomdrap.criticism.fitted_on import doubted_for_facets, refined, refit, with_fresh_slopes
 from geomdrap.criticism.likelihood import Scatter
-from geomdrap.criticism.model import Fitted, doubted_for_facets, refined, refit, with_fresh_slopes
+from geomdrap.criticism.model import Fitted
 from geomdrap.criticism.search import Round, judge_of
 from geomdrap.effects import make
 

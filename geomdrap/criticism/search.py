@@ -9,9 +9,10 @@ import numpy as np
 
 from geomdrap.criticism.evidence import Evidence, among_all, chance
 from geomdrap.criticism.experiment import Experiment
+from geomdrap.criticism.fitted_on import again, further
 from geomdrap.criticism.holdout import blocks_of, held_out_error
 from geomdrap.criticism.likelihood import Judge, Residuals, Scatter, deviations
-from geomdrap.criticism.model import Fitted, Look, Whiten, add_effect, again, further, look_at, slow
+from geomdrap.criticism.model import Fitted, Look, Whiten, add_effect, look_at, slow
 from geomdrap.criticism.start import TURNS
 from geomdrap.effects import make
 

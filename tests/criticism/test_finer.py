@@ -14,8 +14,9 @@ import geomdrap as gd
 from geomdrap.criticism.evidence import Evidence
 from geomdrap.criticism.experiment import Experiment, Layup
 from geomdrap.criticism.fit import Fit
+from geomdrap.criticism.fitted_on import doubted_for_facets, refined
 from geomdrap.criticism.likelihood import NO_SCATTER
-from geomdrap.criticism.model import Fitted, Model, doubted_for_facets, refined
+from geomdrap.criticism.model import Fitted, Model
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round
 from geomdrap.surface import shapes

@@ -12,7 +12,8 @@ from geomdrap.criticism.cleaned import cleaned, spoilt
 from geomdrap.criticism.diagnose import _teller
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fit import Fit
-from geomdrap.criticism.model import Fitted, Look, Model, again, further
+from geomdrap.criticism.fitted_on import again, further
+from geomdrap.criticism.model import Fitted, Look, Model
 from geomdrap.criticism.start import Glance, glance, start_values
 from geomdrap.measurement.outliers import Outlier
 
@@ -140,7 +141,7 @@ def test_models_known_before_readings_were_dropped_are_fitted_again_only_near_th
     ]
     idle = replace(known[3], looked_at_only=True)
     fitted_again = []
-    monkeypatch.setattr("geomdrap.criticism.model.refit", lambda _, __, old: fitted_again.append(old) or old)
+    monkeypatch.setattr("geomdrap.criticism.fitted_on.refit", lambda _, __, old: fitted_again.append(old) or old)
     got = again(None, whiten, base, known)
     assert fitted_again == known[:2]
     assert got[2] is known[2]

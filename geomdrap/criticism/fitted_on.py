@@ -1,0 +1,118 @@
+"""Fitted models fitted on: further, under another noise, without some values, on finer nets; and their doubts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geomdrap.criticism.fit import Fit, fit
+from geomdrap.criticism.likelihood import is_noise
+from geomdrap.criticism.model import NEARLY, Fitted, Whiten, predictor
+from geomdrap.criticism.smooth import note_on
+from geomdrap.effects import make
+
+if TYPE_CHECKING:
+    from geomdrap.criticism.experiment import Experiment
+
+PLACED = 3  # parameters of the placement, before all others
+REFINEMENTS = 5  # steps on a finer net
+MORE_STEPS = 18  # of a costly fit, if it is the best
+MOSTLY = 0.9  # of the values: a net that predicts fewer is not compared with another
+
+
+def further(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
+    """A costly model fitted on, if it leaves more than noise.
+
+    It may still have been on its way: heading and stiffness make up for each other along a bent valley.
+    """
+    model = old.model
+    idle = old.looked_at_only or not make(model.effects[-1]).costly
+    if idle or is_noise(old.fit.chi2, len(old.fit.residual)):
+        return old
+    way = old.values, model.steps, *model.bounds, old.fit.slopes, MORE_STEPS
+    found = fit(predictor(experiment, model), experiment.measured, whiten, *way)
+    return Fitted(model, found) if found.chi2 < old.fit.chi2 else old
+
+
+def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
+    """A model fitted again, under another noise or without some points, from where it was and with its slopes."""
+    model = old.model
+    predict = predictor(experiment, model)
+    fitted = fit(predict, experiment.measured, whiten, old.values, model.steps, *model.bounds, old.fit.slopes)
+    return Fitted(model, fitted)
+
+
+def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
+    """A costly model fitted on from where it was, on the finer nets of ``finer``, with slopes of the coarser ones.
+
+    Nets are of second order in the pitch: of what a pitch ``ratio`` times smaller changed in the values,
+    1/(ratio² - 1) is left, a third where it was halved. Where no step was taken, nothing is known of it.
+    """
+    model = old.model
+    fine, coarse = predictor(finer, model), predictor(coarser, model)
+    low, high = model.bounds
+    # how the heading of the first side turns the net depends on that side's length: the ply is placed anew first
+    own = slice(PLACED, None)
+    held = low.copy(), high.copy()
+    held[0][own] = held[1][own] = old.values[own]
+    way = old.values, model.steps, *held, old.fit.slopes, REFINEMENTS
+    found = fit(fine, finer.measured, whiten, *way, sloped=coarse)
+    # where it has turned to, worn slopes hide how heading and stiffness make up for each other
+    found = fit(fine, finer.measured, whiten, found.values, model.steps, low, high, None, REFINEMENTS, sloped=coarse)
+    ratio, moved = coarser.pitches[1] / finer.pitches[1], np.abs(found.values - old.values)
+    return Fitted(model, found, moved / (ratio**2 - 1.0) if ratio > 1.0 and moved.any() else None)
+
+
+def again(experiment: Experiment, whiten: Whiten, base: Fitted, known: Sequence[Fitted]) -> list[Fitted]:
+    """Models with one effect more than the base that were fitted before some values were dropped.
+
+    Only those near the best are fitted again: the others predict what they did.
+    """
+    least = min((t.fit.chi2 for t in known), default=base.fit.chi2)
+    out = []
+    for trial in known:
+        better = trial.fit.chi2 < base.fit.chi2 and not trial.looked_at_only
+        if better and trial.fit.chi2 - least <= NEARLY * (base.fit.chi2 - least):
+            out.append(refit(experiment, whiten, trial))
+        elif better:
+            out.append(trial)
+        else:
+            own = slice(len(base.values), None)
+            values = np.append(base.values, trial.model.neutral[own])
+            slopes = np.hstack([base.fit.slopes, trial.fit.slopes[:, own]])
+            out.append(replace(trial, fit=Fit(values, base.fit.residual, slopes, base.fit.chi2)))
+    return out
+
+
+def with_fresh_slopes(experiment: Experiment, old: Fitted) -> Fitted:
+    """The same model with slopes by central differences where it is now: those of a fit are corrected as it goes."""
+    predict = predictor(experiment, old.model)
+    low, high = old.model.bounds
+    slopes = old.fit.slopes.copy()
+    for k, step in enumerate(old.model.steps):
+        ends = [old.values.copy(), old.values.copy()]
+        ends[0][k] = max(old.values[k] - step, low[k])
+        ends[1][k] = min(old.values[k] + step, high[k])
+        change = (predict(ends[1]) - predict(ends[0])) / (ends[1][k] - ends[0][k])
+        slopes[:, k] = np.where(np.isfinite(change), change, slopes[:, k])
+    return replace(old, fit=replace(old.fit, slopes=slopes))
+
+
+def doubted_for_facets(experiment: Experiment, model: Fitted) -> Fitted:
+    """The model with what the facets of the part leave in doubt of its values, beside other doubts that it has.
+
+    Chords are of second order: what is left after every facet was split in four and rounded is a third of what that
+    changed. Nothing is known of it where facets are not rounded, or a net on them does not predict what was measured.
+    """
+    smooth, rough = (predictor(e, model.model)(model.values) for e in (experiment, experiment.unsmoothed()))
+    known = np.isfinite(smooth - rough)
+    if note_on(experiment.surface) or known.mean() < MOSTLY:
+        return model
+    slopes = (model.fit.slopes / experiment.noise[:, None])[known]
+    norm = np.linalg.norm(slopes, axis=0) + 1e-300
+    change = ((smooth - rough) / experiment.noise)[known]
+    doubt = np.abs(np.linalg.lstsq(slopes / norm, change, rcond=1e-9)[0] / norm) / 3.0
+    return replace(model, doubt=doubt if model.doubt is None else np.hypot(model.doubt, doubt))
