@@ -100,11 +100,13 @@ def _document(path: str | Path) -> dict[str, Any]:
     try:
         document = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
-        raise EffectError(f"model {path} cannot be read: {error.strerror}") from error
+        raise EffectError(f"model {path} cannot be read ({error.strerror}); check the path") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise EffectError(f"model {path} is no TOML file: {error}") from error
-    if document.get("format") != FORMAT:
-        raise EffectError(f"model {path} has format {document.get('format')!r}; this version reads {FORMAT!r}")
+    if "format" not in document:
+        raise EffectError(f"{path} is no model file: it has no format = {FORMAT!r} (a set-up goes with --setup)")
+    if document["format"] != FORMAT:
+        raise EffectError(f"model {path} has format {document['format']!r}; this version reads {FORMAT!r}")
     for key in set(document) - {"format", "layup", "effect"}:
         raise EffectError(f"model {path}: {key!r} is not known; a model has a format, [layup] and [[effect]] tables")
     return document

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from difflib import get_close_matches
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
@@ -85,7 +86,9 @@ def find(name: str) -> type[Effect]:
     """The effect of a name. Raises EffectError, with the names there are, if there is none."""
     known = available()
     if name not in known:
-        raise EffectError(f"there is no effect {name!r}; the effects are {', '.join(known)}")
+        near = get_close_matches(name, known, 1, 0.7)
+        meant = f" (is {near[0]} meant?)" if near else ""
+        raise EffectError(f"there is no effect {name!r}{meant}; the effects are {', '.join(known)}")
     return known[name]
 
 

@@ -108,6 +108,7 @@ def test_a_drape_without_effects_says_so(part):
     [
         (["--effect", "slip:coefficient=2"], "coefficient must be a number from 0 to 1"),
         (["--effect", "slip=2"], "there is no effect 'slip=2'"),
+        (["--effect", "shear-stifness"], "there is no effect 'shear-stifness' (is shear-stiffness meant?)"),
         (["--model", "missing.toml"], "missing.toml cannot be read"),
     ],
 )

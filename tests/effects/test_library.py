@@ -95,7 +95,7 @@ def test_a_typical_effect_changes_something_and_is_named_by_the_net(name):
         ("thickness:offset=nan", "offset must be a number from -50 to 50 mm"),
         ("slip:coefficient=inf", "from 0 to 1"),
         ("slip:friction=0.1", "slip has no parameter 'friction'; it takes coefficient"),
-        ("slipp:coefficient=0.1", "no effect 'slipp'; the effects are placement"),
+        ("slipp:coefficient=0.1", "no effect 'slipp' .is slip meant.*; the effects are placement"),
         ("slip:coefficient", "not PARAMETER=NUMBER"),
         ("slip:coefficient=a", "not PARAMETER=NUMBER"),
         ("slip:coefficient=0.1,coefficient=0.2", "not PARAMETER=NUMBER"),
@@ -231,7 +231,7 @@ def test_a_model_file_gives_back_what_was_written(tmp_path):
     ("text", "words"),
     [
         ('format = "geomdrap.model/9"', "this version reads"),
-        ("", "has format None"),
+        ("", "is no model file"),
         ("[[effect", "no TOML file"),
         ('format = "geomdrap.model/1"\nspeed = 1', "'speed' is not known"),
         ('format = "geomdrap.model/1"\n[[effect]]\nname = "slip"\ncoefficient = 2.0', "from 0 to 1"),
