@@ -16,7 +16,7 @@ from geomdrap.criticism.cleaned import cleaned, outliers_of
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
 from geomdrap.criticism.evidence import Evidence, alike_in_what_they_leave, rivals, says_the_same
 from geomdrap.criticism.experiment import Experiment, Layup, flatten
-from geomdrap.criticism.final import final, said_of_coarser, told_apart
+from geomdrap.criticism.final import contenders, final, said_of_coarser, told_apart
 from geomdrap.criticism.fitted_on import refit
 from geomdrap.criticism.jackknife import widened
 from geomdrap.criticism.leftover import Leftover, leftover
@@ -168,7 +168,7 @@ def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, 
     ends: dict[str, tuple[Experiment, Fitted]] = {}
     if names:
         k = len(names) - 1
-        ends, seen = told_apart(meant, rounds[k], rivals(rounds[k].evidence))
+        ends, seen = told_apart(meant, rounds[k], contenders(rounds[k].evidence))
         alike, rounds = tuple(ends), [*rounds[:k], seen, *rounds[k + 1 :]]
         names, scatter = [*names[:k], alike[0]], seen.trial(alike[0])[1]
     experiment, model = ends[alike[0]] if alike else final(meant, model, scatter)

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from geomdrap.criticism.evidence import RIVAL_SHARE, Evidence, rivals
+from geomdrap.criticism.evidence import MOST, RIVAL_SHARE, Evidence, rivals
 from geomdrap.criticism.experiment import Experiment, restless
 from geomdrap.criticism.fitted_on import doubted_for_facets, refined, refit, with_fresh_slopes
 from geomdrap.criticism.likelihood import Scatter
@@ -59,10 +59,21 @@ def rests(experiment: Experiment, model: Fitted) -> bool:
     return not restless(experiment.draped(model.model.built(model.values), experiment.pitches[1]))
 
 
+def contenders(evidence: Sequence[Evidence]) -> tuple[str, ...]:
+    """The rivals, the best first, and what that comes to at small values, where it explains nearly all.
+
+    The pitch of a coarse net looks like a little more of the best, as of yarns that resist bending: finer nets tell.
+    """
+    near = rivals(evidence)
+    of = {e.name: e for e in evidence}
+    less = [of[name] for name in (of[near[0]].includes if near else ()) if name in of and name not in near]
+    return (*near, *(e.name for e in less if e.found and e.share >= MOST))
+
+
 def told_apart(
     experiment: Experiment, last: Round, alike: Sequence[str]
 ) -> tuple[dict[str, tuple[Experiment, Fitted]], Round]:
-    """The rivals ``alike`` that finer nets leave, the best first, each fitted to the end; the round as those see it.
+    """The contenders ``alike`` that finer nets leave, the best first, fitted to the end; the round as those see it.
 
     ``last`` is the round of the search that found them. What nets on which costly ones could not be fitted do not
     tell apart stays as it was.
@@ -70,7 +81,7 @@ def told_apart(
     ends = {name: final(experiment, *last.trial(name)) for name in alike}
     costly = [name for name in alike if make(name).costly]
     if len(alike) < 2 or not costly or any(ends[name][0] is experiment for name in costly):
-        return ends, last
+        return {name: ends[name] for name in rivals(last.evidence)}, last
     rows = np.all([np.isfinite(model.fit.residual) for _, model in ends.values()], axis=0)
     whiten = judge_of(experiment, rows).whiten(last.trial(alike[0])[1])
     square = {name: float((whiten(model.fit.residual[rows]) ** 2).sum()) for name, (_, model) in ends.items()}

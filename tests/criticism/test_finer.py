@@ -128,7 +128,18 @@ def test_rivals_on_a_coarse_net_are_told_apart_by_finer_ones(monkeypatch, behind
     ends, seen = last.told_apart(meant, of, names)
     assert list(ends) == left
     gains = {e.name: e.gain for e in seen.evidence}
-    assert gains[names[1]] - gains[names[0]] == pytest.approx(-1.0 if coarse else behind)  # confidence weighs by these
+    # confidence weighs by these
+    assert gains[names[1]] - gains[names[0]] == pytest.approx(-1.0 if coarse else behind)
+
+
+@pytest.mark.parametrize(("behind", "share", "asked"), [(60.0, 0.99, True), (5.0, 0.99, True), (60.0, 0.8, False)])
+def test_what_the_best_comes_to_at_small_values_is_asked_of_finer_nets_too(behind, share, asked):
+    """On a coarse net a little bending makes up for the pitch: shear stiffness was called yarn-bending."""
+    best = Evidence("yarn-bending", 900.0, 1, 0.0, 0.0, 0.99, 0.5, True, ("shear-stiffness",))
+    less = Evidence("shear-stiffness", 900.0 - behind, 1, 0.0, 0.0, share, 0.5, True)
+    assert last.contenders((less, best)) == ("yarn-bending", "shear-stiffness")[: 1 + asked]
+    assert last.contenders((less,)) == ("shear-stiffness",)
+    assert last.contenders(()) == ()
 
 
 SLOPES = np.random.default_rng(1).normal(size=(POINTS, 4))  # of the placement and an offset
