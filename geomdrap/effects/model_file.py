@@ -25,10 +25,12 @@ def write_model(
     """Write effects (the placement among them) to a model file; ``notes`` become comments at its head.
 
     ``layup`` says how the ply was meant to lie that the effects were fitted to: origin, angle, reference; of relaxed
-    nets also the pitch, mm, and the length of warp that was held.
+    nets also the pitch, mm, and the length of warp that was held, which a ``HeldWarp`` among the effects says, too.
 
     Raises EffectError for an effect without a name: it could not be found again.
     """
+    held = {"held": e.values["length"] for e in effects if isinstance(e, HeldWarp)}
+    effects, layup = [e for e in effects if not isinstance(e, HeldWarp)], {**(layup or {}), **held}
     lines = [f"# {line}" for note in notes for line in note.splitlines()]
     lines += [f'format = "{FORMAT}"']
     if layup:

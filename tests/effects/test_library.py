@@ -262,6 +262,9 @@ def test_a_model_file_says_how_the_ply_was_meant_to_lie(tmp_path):
     assert gd.effects.read_layup(file) == {"angle": 5.0, "pitch": 4.0}
     held = gd.effects.read_model(file)[-1]
     assert held.on_fabric(gd.Fabric()).held_length == 8.0
+    gd.effects.write_model(file, [gd.effects.make("shear-stiffness", ratio=0.003), held])  # as a net's own effects
+    assert [e.name for e in gd.effects.read_model(file)] == ["shear-stiffness", "held-warp"]
+    assert gd.effects.read_layup(file) == {}
     gd.effects.write_model(file, [])
     assert gd.effects.read_layup(file) == {}
     file.write_text('format = "geomdrap.model/1"\n[layup]\nangle = "steep"\n')
