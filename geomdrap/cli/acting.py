@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,3 +19,8 @@ def effects_of(texts: tuple[str, ...], model: Path | None, plugins: tuple[Path, 
     for plugin in plugins:
         effects.load_plugin(plugin)
     return [*(effects.read_model(model) if model else ()), *map(effects.parse, texts)]
+
+
+def said_of_model(taken: Sequence[str], model: Path) -> str:
+    """That something of how the ply lies is taken from a model."""
+    return f"{' and '.join(taken)} of the ply {'is that' if len(taken) == 1 else 'are those'} of {model.name}"

@@ -64,6 +64,7 @@ def compare(
     sigma_xyz, sigma_shear, sigma_direction and replicate, where known. Without u, v a point is held
     against the nearest point of the drape, and its position only along the normal. The drape lies on the smooth tool
     that the facets stand for, as the ply does; --facets is for nodes that another program has put on the facets.
+    What neither options nor --setup say of the ply is taken from the --model, where that says it.
 
     \b
     Examples:

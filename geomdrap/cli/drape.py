@@ -12,7 +12,6 @@ from click.core import ParameterSource
 from geomdrap.cli.elements import fe_mesh_of, notes_on, ply_on
 from geomdrap.cli.folders import check_folder
 from geomdrap.cli.lazy import COMMAND
-from geomdrap.cli.measured import said_of_model
 from geomdrap.cli.options import (
     cloth_options,
     cut_option,
@@ -109,6 +108,7 @@ def drape(
       geomdrap drape hood.stl --angle 45 --roll-width 600 --seam-overlap 20
       geomdrap drape hood.stl --angle 45 --onto hood_fe.inp --ply-thickness 0.3
     """
+    from geomdrap.cli.acting import said_of_model
     from geomdrap.cli.messages import of_an_earlier_run, print_json, say
     from geomdrap.cli.progress import Progress, announce_compilation
     from geomdrap.cli.summary import summary

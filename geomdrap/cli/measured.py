@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -142,6 +142,7 @@ def read_asked(
     What neither options nor the set-up give is that of the ply to which a ``model`` was fitted, where it says.
     """
     import geomdrap as gd
+    from geomdrap.cli.acting import said_of_model
     from geomdrap.effects import read_layup
     from geomdrap.measurement import Setup
 
@@ -158,12 +159,7 @@ def read_asked(
     laid, taken, notes = _laid(known, given, meant)
     if taken and model is not None:
         notes = (said_of_model(taken, model), *notes)
-    return Asked(surface, measurement, {**laid, "project": project or "origin" in taken}, notes)
-
-
-def said_of_model(taken: Sequence[str], model: Path) -> str:
-    """That something of how the ply lies is taken from a model."""
-    return f"{' and '.join(taken)} of the ply {'is that' if len(taken) == 1 else 'are those'} of {model.name}"
+    return Asked(surface, measurement, {**laid, "project": project}, notes)
 
 
 def _laid(
