@@ -95,9 +95,8 @@ def _as_seen(evidence: Sequence[Evidence], square: Mapping[str, float]) -> tuple
     of = {e.name: e for e in evidence}
     best = of[min(square, key=lambda name: square[name] + 2.0 * of[name].unknowns)]
     gain, share = (max(getattr(of[name], what) for name in square) for what in ("gain", "share"))
-    out = []
-    for e in evidence:
-        behind = square[e.name] - square[best.name] if e.name in square else 0.0
-        more = replace(e, gain=gain - behind, share=share * (1.0 - behind / gain))
-        out.append(more if e.name in square else e)
-    return tuple(out)
+    behind = {name: square[name] - square[best.name] for name in square}
+    return tuple(
+        replace(e, gain=gain - behind[e.name], share=share * (1.0 - behind[e.name] / gain)) if e.name in behind else e
+        for e in evidence
+    )

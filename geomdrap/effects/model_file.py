@@ -29,8 +29,9 @@ def write_model(
 
     Raises EffectError for an effect without a name: it could not be found again.
     """
-    held = {"held": e.values["length"] for e in effects if isinstance(e, HeldWarp)}
-    effects, layup = [e for e in effects if not isinstance(e, HeldWarp)], {**(layup or {}), **held}
+    held = next((e.values["length"] for e in effects if isinstance(e, HeldWarp)), None)
+    effects, layup = [e for e in effects if not isinstance(e, HeldWarp)], dict(layup or {})
+    layup |= {"held": held} if held else {}
     lines = [f"# {line}" for note in notes for line in note.splitlines()]
     lines += [f'format = "{FORMAT}"']
     if layup:

@@ -1,10 +1,11 @@
 """Nets of least energy: a fabric that resists shear gives way until stretching and shearing are in balance.
 
 The nodes of the geometric net that have cells move on the part; the seed is held, and the first warp piece keeps its
-heading, or a longer stretch if the fabric says so. Newton's method with exact second
-derivatives, the curvature of the part among them, in two unknowns a node. A step that does not lower the energy is
-followed by a second one, which takes back what that has stretched; if that is in vain it is shortened, then damped
-(Levenberg). Minimal is the net when the forces along the surface vanish against those that balance each other.
+heading, or a longer stretch if the fabric says so. Newton's method with exact second derivatives, the curvature of
+the part among them, in two unknowns a node. A step that does not lower the energy is followed by a second one, which
+takes back what that has stretched; if that is in vain it is shortened, then damped (Levenberg). Where Newton's step
+leads uphill, over a ridge of the energy, it is turned round. Minimal is the net when the forces along the surface
+vanish against those that balance each other.
 """
 
 from __future__ import annotations

@@ -109,9 +109,16 @@ def as_net(net: Net, problem: Problem, found: Relaxed) -> Net:
         shear=np.where(np.isfinite(points[..., 0]), net.shear + after[1] - before[1], np.nan),
         yarns=_yarns(lattice, found, nodes),
         sides=_sides(net, problem, found),
-        notes=(*net.notes, f"net of least energy, forces balanced to {found.unrest:.0e} in {found.rounds} rounds"),
+        notes=(*net.notes, _said(net, problem, found)),
         warnings=(*net.warnings, *_doubts(net, found)),
     )
+
+
+def _said(net: Net, problem: Problem, found: Relaxed) -> str:
+    """How well the forces balance, and what holds the heading: on a small ply that may be less than was asked for."""
+    held = abs(problem.guided[0] - problem.fixed[0]) * net.pitch
+    over = f", its heading held over {held:g} mm" if net.fabric.held_length else ""
+    return f"net of least energy{over}, forces balanced to {found.unrest:.0e} in {found.rounds} rounds"
 
 
 def _sides(net: Net, problem: Problem, found: Relaxed) -> tuple[np.ndarray, np.ndarray]:

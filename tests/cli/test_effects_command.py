@@ -157,6 +157,8 @@ def test_a_model_of_a_relaxed_net_is_drawn_with_its_pitch_and_held_over_its_leng
     both = [json.loads(drape.stdout) for drape in drapes.values()]
     assert [one["pitch"] for one in both] == [12.0, 12.0]
     assert both[0]["effects"][-1]["name"] == "held-warp"
+    assert "its heading held over 24 mm" in drapes["model.toml"].stderr
+    assert "held over" not in drapes["short.toml"].stderr
     assert "angle and pitch of the ply are those of model.toml" in drapes["model.toml"].stderr
     told = json.loads(
         run("drape", "saddle.stl", "--pitch", "15", "--outputs", "json", "--json", "--model", "model.toml").stdout
