@@ -164,11 +164,11 @@ def test_a_step_goes_no_further_than_a_hundred_times_a_parameters_own():
 def test_what_a_step_over_a_threshold_shows_is_no_slope():
     """Below 0 the model is another one, and far off: the slopes are those of where the fit stays."""
     a = np.random.default_rng(5).normal(size=(30, 2))
-    y = a @ [1.0, -0.02]
+    y = a @ [1.0, -1.0]
 
     def predict(p):
         return a @ p + (1e3 if p[1] < 0.0 else 0.0)
 
-    got = fit(predict, y, same, np.array([1.0, 0.01]), STEPS, *WIDE)
+    got = fit(predict, y, same, np.array([0.0, 0.01]), STEPS, *WIDE)
     assert got.values[1] >= 0.0
     np.testing.assert_allclose(got.slopes, a, atol=0.05)

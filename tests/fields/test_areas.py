@@ -1,11 +1,14 @@
 """Areas: of the part, of the fabric on it, of its flat pattern; exact where the part unrolls, second order elsewhere."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_parts import cube, open_box, pan, plate_with_holes, square_tube
 
 import geomdrap as gd
 from geomdrap.fields.contour import is_simple, signed_area
+from geomdrap.fields.evaluate import doubts, stretch
 from geomdrap.surface import Surface, shapes
 
 TWO_TRIANGLES = Surface([[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]], [[0, 1, 2], [0, 2, 3]])
@@ -153,3 +156,22 @@ def test_the_rim_of_a_pan_is_smooth_in_the_flat_pattern(origin, angle):
         headings = np.degrees(np.arctan2(ways[:, 1], ways[:, 0]))
         turns = (headings - np.roll(headings, 1) + 180.0) % 360.0 - 180.0
         assert np.abs(turns).max() < 35.0
+
+
+@pytest.mark.parametrize("strains", [(0.01, 0.02), (-0.01, 0.0)])
+def test_strained_yarns_cover_more_or_less_than_flat_ones_and_that_can_be(strains):
+    plane = shapes.plane(200.0, 150.0, 10.0)
+    given = dict(zip(("strain_warp", "strain_weft"), strains, strict=True))
+    net = gd.drape(plane, (0.0, 0.0, 0.0), 0.0, 10.0, effects=[gd.effects.make("yarn-extension", **given)])
+    assert stretch(net) == pytest.approx((1.0 + strains[0]) * (1.0 + strains[1]), rel=1e-6)
+    result = gd.evaluate(net)
+    assert not any("cannot be" in warning for warning in result.warnings)
+    # the strip between the last cell and the rim, a tenth of this plate, is taken as unstrained
+    assert result.area.draped / result.area.fabric == pytest.approx(stretch(net), abs=0.15 * abs(stretch(net) - 1.0))
+
+
+@pytest.mark.parametrize(("stretched", "said"), [(1.0, True), (1.02, True), (1.04, False)])
+def test_a_fabric_smaller_than_what_it_covers_is_doubted(stretched, said):
+    result = draped(shapes.plane(200.0, 150.0, 10.0), (0.0, 0.0, 0.0), 0.0, 10.0)
+    area = replace(result.area, fabric=0.97 * result.area.draped)
+    assert any("cannot be" in sentence for sentence in doubts(result.flat, result.checks, area, stretched)) == said
