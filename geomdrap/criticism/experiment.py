@@ -25,6 +25,7 @@ CHANNELS = ("along", "across", "normal", "shear", "warp", "weft")
 KEPT = 12  # surfaces with effects on them that are kept, and corrections of coarse nets
 KEPT_NETS = 3
 ALIKE = 0.3  # of their typical sizes: values differ by less where a net is relaxed from another one
+HARDLY_DIFFERENT = 0.15  # likewise, where what a coarse net gets wrong is the same
 TOP = 97.0  # percentile of the shear that counts as the largest
 FINE, COARSE = 7000, 900  # nodes of the net, for what costs milliseconds and for what costs seconds
 
@@ -80,7 +81,7 @@ class Experiment:
     warnings: tuple[str, ...] = ()
     surfaces: dict[str, Surface] = field(default_factory=dict)
     refused: dict[str, str] = field(default_factory=dict)
-    coarseness: dict[str, np.ndarray] = field(default_factory=dict)
+    coarseness: list[tuple[Sequence[Effect], np.ndarray]] = field(default_factory=list)
     costly: dict[str, Net] = field(default_factory=dict)
     splits: list[Split] = field(default_factory=list)
     last: dict[str, tuple[Sequence[Effect], Net | None]] = field(default_factory=dict)
@@ -101,14 +102,15 @@ class Experiment:
         return float(np.nanpercentile(np.abs(self.draped((), self.pitches[1]).cell_shear), TOP))
 
     def _coarseness(self, effects: Sequence[Effect]) -> np.ndarray:
-        """What the fine net gives more than the coarse one (m,)."""
-        key = "+".join(map(repr_of, in_order(effects)))
-
-        def make() -> np.ndarray:
-            fine, coarse = (self._flat(self.draped(effects, pitch)) for pitch in self.pitches)
-            return fine - coarse
-
-        return kept(self.coarseness, key, make, KEPT)
+        """What the fine net gives more than the coarse one (m,), at these values or others hardly different."""
+        acting = in_order(effects)
+        for before, known in self.coarseness:
+            if [e.name for e in before] == [e.name for e in acting] and _alike(before, acting, HARDLY_DIFFERENT):
+                return known
+        fine, coarse = (self._flat(self.draped(effects, pitch)) for pitch in self.pitches)
+        self.coarseness.append((acting, fine - coarse))
+        del self.coarseness[:-KEPT]
+        return fine - coarse
 
     def draped(self, effects: Sequence[Effect] = (), pitch: float | None = None) -> Net:
         """The model's net with effects, at the model's own pitch (mm) unless another is given."""
@@ -124,31 +126,30 @@ class Experiment:
         Over a longer way it might be held back in another balance than the one that a drape finds.
         """
         acting = in_order(effects)
-        if self.coarser is not None and pitch == self.pitches[1]:
-            return self._refined(acting, pitch, self.coarser)
         names = f"{pitch!r} {'+'.join(e.name for e in acting)}"
         before, last = self.last.get(names, (acting, None))
         near = last if _alike(before, acting) else None
-        net = self._draped(effects, pitch, near)
+        net = self._draped(effects, pitch, near) if near is not None else self._first(acting, pitch)
         if near is not None and restless(net):
-            net = self._draped(effects, pitch)
+            net = self._first(acting, pitch)
         if not restless(net):
             self.last[names] = acting, net
         return net
+
+    def _first(self, effects: Sequence[Effect], pitch: float) -> Net:
+        """A net of what is costly, from a coarser one if that is of least energy and at rest."""
+        finest = self.coarser is not None and pitch == self.pitches[1]
+        if finest and fabric_with(effects, Fabric()).relaxes:
+            near = self.draped(effects, self.coarser)
+            net = near if restless(near) else self._draped(effects, pitch, near)
+            if not restless(net):
+                return net
+        return self._draped(effects, pitch)
 
     @property
     def held(self) -> float:
         """The length of warp, mm, that holds the heading of relaxed nets: a piece of the coarsest."""
         return self.coarser or self.pitches[1]
-
-    def _refined(self, effects: Sequence[Effect], pitch: float, coarser: float) -> Net:
-        """A net of what is costly, from a coarser one if that is of least energy and at rest."""
-        if fabric_with(effects, Fabric()).relaxes:
-            near = self.draped(effects, coarser)
-            net = near if restless(near) else self._draped(effects, pitch, near)
-            if not restless(net):
-                return net
-        return self._draped(effects, pitch)
 
     def _draped(self, effects: Sequence[Effect], pitch: float, near: Net | None = None) -> Net:
         lay, (surface, others) = self.layup, self._surface_under(effects)
@@ -184,7 +185,7 @@ class Experiment:
         """The same experiment with the net for what is costly twice as fine, but no finer than the other one."""
         first, pitch = self.pitches
         half = max(0.5 * pitch, first)
-        return replace(self, pitches=(first, half), coarser=pitch if half < pitch else None, coarseness={})
+        return replace(self, pitches=(first, half), coarser=pitch if half < pitch else None, coarseness=[])
 
     def as_meant(self, effects: Sequence[Effect]) -> dict[str, str | float | tuple[float, ...]]:
         """How the ply was meant to lie, as a model file with effects holds it: with what relaxed nets depend on."""
@@ -195,13 +196,12 @@ class Experiment:
         """The same experiment without the values ``drop`` (n, c) bool."""
         kept = ~flatten(drop, self.mask)
         values = {"noise": self.noise[kept], "measured": self.measured[kept]}
-        return replace(self, mask=self.mask & ~drop, coarseness={}, **values)
+        return replace(self, mask=self.mask & ~drop, coarseness=[], **values)
 
     def unsmoothed(self) -> Experiment:
         """The same experiment with nets on the facets themselves, not on the smooth tool that they stand for."""
-        names = ("surfaces", "coarseness", "costly", "last", "refused")
-        kept: dict[str, dict[str, object]] = {name: {} for name in names}
-        return replace(self, on_facets=True, **kept)  # type: ignore[arg-type]
+        kept: dict[str, dict[str, object]] = {name: {} for name in ("surfaces", "costly", "last", "refused")}
+        return replace(self, on_facets=True, coarseness=[], **kept)  # type: ignore[arg-type]
 
     def white(self, values: np.ndarray) -> np.ndarray:
         """Values (m,) or slopes (m, p) over the noise."""
@@ -231,11 +231,11 @@ def restless(net: Net) -> bool:
     return any(UNREST in warning for warning in net.warnings)
 
 
-def _alike(some: Sequence[Effect], others: Sequence[Effect]) -> bool:
-    """Whether all values of the same effects differ by less than ``ALIKE`` of their typical sizes."""
+def _alike(some: Sequence[Effect], others: Sequence[Effect], share: float = ALIKE) -> bool:
+    """Whether all values of the same effects differ by less than a share of their typical sizes."""
     sizes = [abs(q.typical - q.neutral) or abs(q.typical) for e in some for q in e.parameters]
     values = [[e.values[q.name] for e in effects for q in e.parameters] for effects in (some, others)]
-    return all(abs(a - b) <= ALIKE * size for a, b, size in zip(*values, sizes, strict=True))
+    return all(abs(a - b) <= share * size for a, b, size in zip(*values, sizes, strict=True))
 
 
 def repr_of(effect: Effect) -> str:

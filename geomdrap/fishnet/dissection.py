@@ -28,7 +28,9 @@ class Fronts(NamedTuple):
     """The order of elimination for n nodes and, if any, k yarns: unknowns 2·node and 2·node + 1, then 2n + yarn.
 
     ``unknowns`` [start[f] : start[f + 1]] of front f, of which the first ``own`` [f] are eliminated there; ``home``
-    (2n + k,) the front of each; ``halves`` (fronts, 2) that come before it, -1 for none.
+    (2n + k,) the front of each; ``halves`` (fronts, 2) that come before it, -1 for none: the last that have not been
+    halves of another front. ``rows`` and ``left`` are room for what is kept of all fronts and what they pass on, at
+    ``held`` and ``passed`` (fronts,), ``front`` for the largest; ``solve`` works in these, so not twice at a time.
     """
 
     unknowns: np.ndarray
@@ -36,38 +38,58 @@ class Fronts(NamedTuple):
     own: np.ndarray
     home: np.ndarray
     halves: np.ndarray
+    held: np.ndarray
+    passed: np.ndarray
+    rows: np.ndarray
+    left: np.ndarray
+    front: np.ndarray
 
 
 @kernel
 def rectangles(number: np.ndarray, reach: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Nested rectangles i0, i1, j0, j1 (m, 4) of nodes ``number`` (nu, nv), larger ones first, their cuts and halves.
+    """Nested rectangles i0, i1, j0, j1 (m, 4) of nodes ``number`` (nu, nv), their cuts and halves.
 
-    Cuts (m, 2) are the axis, -1 for none, and the first of ``reach`` rows or columns; halves (m, 2) are rectangles,
-    -1 for empty ones.
+    A rectangle is followed by all that lies in one half of it, then by all that lies in the other. Cuts (m, 2) are
+    the axis, -1 for none, and the first of ``reach`` rows or columns; halves (m, 2) are rectangles, -1 where empty.
     """
     most = 2 * number.size + 1
     box, cut, halves = np.zeros((most, 4), np.int64), np.full((most, 2), -1), np.full((most, 2), -1)
-    box[0, 1], box[0, 3] = number.shape
-    count, at = 1, 0
-    while at < count:
+    waiting = np.zeros((most, 2), np.int64)  # halves: of which rectangle, and which of the two
+    waiting[0] = -1
+    count, left = 0, 1
+    while left > 0:
+        left -= 1
+        at, (whole, half) = count, waiting[left]
+        count += 1
+        if whole < 0:
+            box[at, 1], box[at, 3] = number.shape
+        else:
+            box[at] = half_of(box[whole], cut[whole], half, reach)
+            halves[whole, half] = at
         i0, i1, j0, j1 = box[at]
-        if (i1 - i0) * (j1 - j0) > LEAF:
-            axis = 0 if i1 - i0 >= j1 - j0 else 1
-            middle = (i0 + i1) // 2 if axis == 0 else (j0 + j1) // 2
-            cut[at, 0], cut[at, 1] = axis, middle
-            for half in range(2):
-                box[count] = box[at]
-                box[count, 2 * axis + 1 - half] = middle + half * reach
-                if (number[box[count, 0] : box[count, 1], box[count, 2] : box[count, 3]] >= 0).any():
-                    halves[at, half] = count
-                    count += 1
-        at += 1
+        if (i1 - i0) * (j1 - j0) <= LEAF:
+            continue
+        axis = 0 if i1 - i0 >= j1 - j0 else 1
+        cut[at, 0], cut[at, 1] = axis, (i0 + i1) // 2 if axis == 0 else (j0 + j1) // 2
+        for half in range(2):
+            i0, i1, j0, j1 = half_of(box[at], cut[at], half, reach)
+            if (number[i0:i1, j0:j1] >= 0).any():
+                waiting[left, 0], waiting[left, 1] = at, half
+                left += 1
     return box[:count], cut[:count], halves[:count]
 
 
 @kernel
+def half_of(box: np.ndarray, cut: np.ndarray, half: int, reach: int) -> np.ndarray:
+    """One of the two rectangles (4,) beside the cut."""
+    out = box.copy()
+    out[2 * cut[0] + 1 - half] = cut[1] + half * reach
+    return out
+
+
+@kernel
 def homes_of_yarns(box: np.ndarray, nu: int, nv: int) -> np.ndarray:
-    """Fronts (nv + nu,) that hold the whole of each warp and weft yarn, of rectangles (m, 4), larger ones first."""
+    """Fronts (nv + nu,) that hold the whole of each warp and weft yarn; rectangles (m, 4) precede their halves."""
     last = len(box) - 1
     home = np.full(nv + nu, last)
     for at in range(len(box)):
@@ -144,7 +166,7 @@ def dissect(number: np.ndarray, n: int, yarns: bool, reach: int = 1) -> Fronts:
     unknowns = np.empty(16 * n, np.int64)
     count = 0
     for f in range(m):
-        at = m - 1 - f  # smaller ones first
+        at = m - 1 - f  # halves before the whole
         for half in range(2):
             if cut_halves[at, half] >= 0:
                 halves[f, half] = m - 1 - cut_halves[at, half]
@@ -161,4 +183,16 @@ def dissect(number: np.ndarray, n: int, yarns: bool, reach: int = 1) -> Fronts:
             if ring == 0:
                 own[f] = count - start[f]
         start[f + 1] = count
-    return Fronts(unknowns[:count].copy(), start, own, home, halves)
+    size = start[1:] - start[:-1]
+    held, passed, most = np.zeros(m, np.int64), np.zeros(m, np.int64), 0
+    held[1:] = np.cumsum(own * size)[:-1]
+    end = 0  # of what is passed on and still waits
+    for f in range(m):
+        for half in halves[f]:
+            if half >= 0:
+                end = min(end, passed[half])
+        passed[f] = end
+        end += (size[f] - own[f]) ** 2
+        most = max(most, end)
+    rows, left, front = np.empty(held[-1] + own[-1] * size[-1]), np.empty(most), np.empty(size.max() ** 2)
+    return Fronts(unknowns[:count].copy(), start, own, home, halves, held, passed, rows, left, front)

@@ -99,9 +99,9 @@ def add_own(
 
 
 @tight
-def add_passed(a: np.ndarray, fronts: Fronts, place: np.ndarray, g: int, left: np.ndarray, from_: int) -> None:
-    """Add to the front a (s, s) what front g has passed on, ``left`` from ``from_`` on."""
-    at = fronts.start[g] + fronts.own[g]
+def add_passed(a: np.ndarray, fronts: Fronts, place: np.ndarray, g: int) -> None:
+    """Add to the front a (s, s) what front g has passed on."""
+    at, left, from_ = fronts.start[g] + fronts.own[g], fronts.left, fronts.passed[g]
     size = fronts.start[g + 1] - at
     for p in range(size):
         to = place[fronts.unknowns[at + p]]
@@ -121,9 +121,9 @@ def reduce_right(a: np.ndarray, fronts: Fronts, f: int, x: np.ndarray) -> None:
 
 
 @tight
-def substitute_back(fronts: Fronts, f: int, rows: np.ndarray, from_: int, x: np.ndarray) -> None:
-    """Solve for the unknowns of front f, whose rows D·Lᵀ begin in ``rows`` at ``from_``, in place in x."""
-    first = fronts.start[f]
+def substitute_back(fronts: Fronts, f: int, x: np.ndarray) -> None:
+    """Solve for the unknowns of front f, whose rows D·Lᵀ are kept, in place in x."""
+    first, rows, from_ = fronts.start[f], fronts.rows, fronts.held[f]
     s = fronts.start[f + 1] - first
     for t in range(fronts.own[f] - 1, -1, -1):
         z = x[fronts.unknowns[first + t]]
@@ -148,29 +148,25 @@ def solve(
     of the unknowns with the tensions of their warp and weft yarns, whose diagonal is -``soft``: with soft = 1/κ the
     matrix is that with κ·slope·slopeᵀ added. With soft = 0 there are no yarns. Not finite where a pivot vanishes.
     """
-    m = len(fronts.own)
-    held, passed = np.zeros(m + 1, np.int64), np.zeros(m + 1, np.int64)
-    for f in range(m):
-        s, e = fronts.start[f + 1] - fronts.start[f], fronts.own[f]
-        held[f + 1], passed[f + 1] = held[f] + e * s, passed[f] + (s - e) * (s - e)
-    rows, left = np.empty(held[m]), np.empty(passed[m])
+    m, rows, left = len(fronts.own), fronts.rows, fronts.left
     place, x = np.zeros(len(fronts.home), np.int64), np.zeros(len(fronts.home))
     x[: len(right)] = right
     for f in range(m):
         first, s, e = fronts.start[f], fronts.start[f + 1] - fronts.start[f], fronts.own[f]
         for t in range(s):
             place[fronts.unknowns[first + t]] = t
-        a = np.zeros((s, s))
+        a = fronts.front[: s * s].reshape(s, s)
+        a[:] = 0.0
         for g in fronts.halves[f]:
             if g >= 0:
-                add_passed(a, fronts, place, g, left, passed[g])
+                add_passed(a, fronts, place, g)
         add_own(a, f, fronts, place, nodes, number, blocks, slopes, soft)
         eliminate(a, e)
         reduce_right(a, fronts, f, x)
-        for t in range(e):
-            rows[held[f] + t * s : held[f] + (t + 1) * s] = a[t]
+        rows[fronts.held[f] : fronts.held[f] + e * s] = fronts.front[: e * s]
         for t in range(s - e):
-            left[passed[f] + t * (s - e) : passed[f] + (t + 1) * (s - e)] = a[e + t, e:]
+            at = fronts.passed[f] + t * (s - e)
+            left[at + t : at + s - e] = a[e + t, e + t :]
     for f in range(m - 1, -1, -1):
-        substitute_back(fronts, f, rows, held[f], x)
+        substitute_back(fronts, f, x)
     return x[: len(right)]

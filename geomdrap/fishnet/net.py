@@ -33,8 +33,9 @@ class Net:
     ``warp0``, ``weft0``, ``normal0`` (3,) unit vectors there; ``angle`` degrees; ``pitch`` mm; ``reach`` half
     lengths of the blank, mm. ``sides`` are the lengths of the warp pieces (nu - 1, nv) and weft pieces (nu, nv - 1)
     as they lie, mm; None where all have the length that they have in the flat fabric. ``effects`` are those that
-    acted, in their order. ``guided`` says that generators follow curves of the user's. ``notes`` say what was chosen,
-    ``warnings`` what the user should look at.
+    acted, in their order. ``guided`` says that generators follow curves of the user's. ``moved`` (nu, nv, 3) mm: how
+    far nodes have gone to where the energy is least, those beyond the rim too; None for a net that is not relaxed.
+    ``notes`` say what was chosen, ``warnings`` what the user should look at.
     """
 
     surface: Surface
@@ -61,6 +62,7 @@ class Net:
     sides: tuple[np.ndarray, np.ndarray] | None = field(default=None)
     effects: tuple[Effect, ...] = field(default=())
     guided: bool = field(default=False)
+    moved: np.ndarray | None = field(default=None)
     notes: tuple[str, ...] = field(default=())
     warnings: tuple[str, ...] = field(default=())
 

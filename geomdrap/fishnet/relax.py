@@ -34,8 +34,10 @@ ROUNDING = 1e-12
 UNEVEN = 1e-6  # of the energy: how much of it facets leave to chance
 CLOSE = 0.1  # unrest below which second derivatives are taken in full
 PATIENCE = 3  # rounds in which the unrest may fail to halve near the end
+AT_THE_END, LAST_ROUNDS = 1e-5, 1  # likewise where facets and rounding are all that is left
 IDLE = 8  # rounds in which the unrest may fail to halve and the energy to fall by more than facets leave to chance
 ROUNDS = 80
+IN_PLANE = 6  # times that a place is moved into a plane and back onto the part, to stand in both
 WARY = 5  # rounds without trust after it was in vain
 
 
@@ -63,20 +65,27 @@ class Relaxed:
 
 
 def placed(problem: Problem, nodes: np.ndarray) -> Footing:
-    """Where nodes (nu, nv, 3) mm stand from which a net is to be relaxed; what is held stands where it is held."""
-    x = nodes.copy()
-    for node, place in zip((problem.fixed, problem.guided), problem.held, strict=True):
-        x[node] = place
-    return stand(problem.surface, x[problem.nodes])
+    """Where nodes (nu, nv, 3) mm not far from the geometric net stand; seed and heading are where they are held."""
+    x, face = nodes[problem.nodes], problem.footing.face.copy()
+    seed, guided = problem.number[problem.fixed], problem.number[problem.guided]
+    x[seed] = problem.held[0]
+    for _ in range(IN_PLANE):
+        off = (x[guided] - problem.held[1]) @ problem.side
+        there = stand(problem.surface, x[[guided]] - off * problem.side, face[[guided]])
+        x[guided], face[guided] = there.point[0], there.face[0]
+    return stand(problem.surface, x, face)
 
 
-def relax(problem: Problem, footing: Footing) -> Relaxed:
-    """Nodes of least energy, from where they stand: ``problem.footing`` is the geometric net."""
+def relax(problem: Problem, footing: Footing, close: bool = False) -> Relaxed:
+    """Nodes of least energy, from where they stand: ``problem.footing`` is the geometric net.
+
+    ``close``: they stand near it, so second derivatives are taken in full from the start.
+    """
     x = problem.on_net(footing.lifted)
     now, damping, stuck = _energy(problem, x, footing), 0.0, 0
     law = problem.law
     fronts = dissect(problem.number, len(footing.face), law.yarn > 0.0, 2 if law.bend > 0.0 else 1)
-    full = False  # far from the end second derivatives need not be positive
+    full = close  # far from the end second derivatives need not be positive
     wary = 0  # the round from which on a step that raises the energy is trusted
     best = mark = Relaxed(x, footing, now, math.inf, 0)
     for n in range(ROUNDS):
@@ -86,7 +95,8 @@ def relax(problem: Problem, footing: Footing) -> Relaxed:
         stuck = stuck + 1 if equations.unrest > 0.5 * best.unrest else 0
         if equations.unrest < best.unrest or now < best.energy * (1.0 - UNEVEN):
             best = Relaxed(x, footing, now, equations.unrest, n)
-        if best.unrest < BALANCED or (best.unrest < GOOD_ENOUGH and stuck > PATIENCE) or n - mark.rounds > IDLE:
+        patience = LAST_ROUNDS if best.unrest < AT_THE_END else PATIENCE
+        if best.unrest < BALANCED or (best.unrest < GOOD_ENOUGH and stuck > patience) or n - mark.rounds > IDLE:
             break
         step = newton_step(problem, fronts, equations, damping)
         downhill = float((equations.gradient * step).sum()) < 0.0  # a BLAS product would wake threads that only spin
@@ -161,7 +171,7 @@ def _searched(
 
 def _moved(problem: Problem, place: Place, way: np.ndarray) -> Place:
     """Where steps (n, 3) mm along tangents of the part lead."""
-    footing = stand(problem.surface, place.footing.point + way, place.footing)
+    footing = stand(problem.surface, place.footing.point + way, place.footing.face)
     x = place.x.copy()
     x[problem.nodes] = footing.lifted
     return Place(x, footing, _energy(problem, x, footing))

@@ -28,25 +28,37 @@ def relaxed(net: Net, near: Net | None = None) -> Net:
     A warning of the net says so where the forces do not come into balance.
     """
     problem = problem_of(net)
-    start = problem.footing if near is None else placed(problem, laid_on(net, near))
-    return as_net(net, problem, relax(problem, start))
+    if near is None or near.moved is None:
+        found = relax(problem, problem.footing)
+    else:
+        start = gone_along(problem.on_net(problem.footing.point, math.nan), net, near)
+        found = relax(problem, placed(problem, start), close=True)
+    moved = found.footing.point - problem.footing.point
+    return replace(as_net(net, problem, found), moved=problem.on_net(moved, math.nan))
 
 
-def laid_on(net: Net, near: Net) -> np.ndarray:
-    """Nodes (nu, nv, 3) mm of a net, moved to where those of a net ``near`` lie, between its nodes by cubics.
+def gone_along(start: np.ndarray, net: Net, near: Net) -> np.ndarray:
+    """Nodes ``start`` (nu, nv, 3) mm of a net, moved as far as those of a net ``near`` have, between its by cubics.
 
     Nodes that the other net has not go with it as a whole, and from there the way of the nearest that it has.
     """
     from scipy.ndimage import distance_transform_edt
 
-    across = _between(near.lattice.swapaxes(0, 1), net.v, near.v).swapaxes(0, 1)
-    other = _between(across, net.u, near.u)
-    known = np.isfinite(other - net.lattice).all(axis=2)
+    assert near.moved is not None
+    across = _between(near.moved.swapaxes(0, 1), net.v, near.v).swapaxes(0, 1)
+    moved = _between(across, net.u, near.u) @ (_frame(near).T @ _frame(net))
+    known = np.isfinite(moved - start).all(axis=2)
     if not known.any():
-        return net.lattice
-    turned = _turned(net.lattice, net.lattice[known], other[known])
+        return start
+    there = start + moved
+    turned = _turned(start, start[known], there[known])
     rows, columns = distance_transform_edt(~known, return_distances=False, return_indices=True)
-    return np.asarray(turned + (other - turned)[rows, columns])
+    return np.asarray(turned + (there - turned)[rows, columns])
+
+
+def _frame(net: Net) -> np.ndarray:
+    """Orthonormal vectors (3, 3) at the seed: the warp, across it, and the normal."""
+    return np.array([net.warp0, np.cross(net.normal0, net.warp0), net.normal0])
 
 
 def _turned(points: np.ndarray, some: np.ndarray, there: np.ndarray) -> np.ndarray:

@@ -50,14 +50,16 @@ class Problem:
     smooth: np.ndarray
     footing: Footing
 
-    def on_net(self, vectors: np.ndarray) -> np.ndarray:
-        """Vectors (n, 3) of the nodes that move as (nu, nv, 3), 0 elsewhere."""
-        return on_net(self.x0.shape, self.nodes, vectors)
+    def on_net(self, vectors: np.ndarray, elsewhere: float = 0.0) -> np.ndarray:
+        """Vectors (n, 3) of the nodes that move as (nu, nv, 3), with another value elsewhere."""
+        return on_net(self.x0.shape, self.nodes, vectors, elsewhere)
 
 
-def on_net(shape: tuple[int, ...], nodes: tuple[np.ndarray, np.ndarray], vectors: np.ndarray) -> np.ndarray:
-    """Vectors (n, 3) of ``nodes`` on a net of that shape, 0 elsewhere."""
-    out = np.zeros(shape)
+def on_net(
+    shape: tuple[int, ...], nodes: tuple[np.ndarray, np.ndarray], vectors: np.ndarray, elsewhere: float = 0.0
+) -> np.ndarray:
+    """Vectors (n, 3) of ``nodes`` on a net of that shape, with another value elsewhere."""
+    out = np.full(shape, elsewhere)
     out[nodes] = vectors
     return out
 
@@ -107,7 +109,8 @@ def pose(net: Net, law: Law) -> Problem:
     number[nodes] = np.arange(len(i_moves))
     surface = net.surface.lidded
     x = np.full(lattice.shape, np.nan)
-    footing = stand(surface, lattice[nodes])
+    face = net.face[nodes]
+    footing = stand(surface, lattice[nodes], face if (face >= 0).all() else None)
     x[nodes] = footing.lifted
     rest_u, rest_v = (np.linalg.norm(np.diff(x, axis=axis), axis=2) for axis in (0, 1))
     return Problem(

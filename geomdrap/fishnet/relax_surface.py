@@ -83,17 +83,17 @@ class Footing(NamedTuple):
     outside: np.ndarray
 
 
-def stand(surface: Surface, points: np.ndarray, last: Footing | None = None) -> Footing:
+def stand(surface: Surface, points: np.ndarray, face: np.ndarray | None = None) -> Footing:
     """Nearest places of the surface; beyond its rim it goes on in its tangent planes there, without a step.
 
-    Nodes that have moved a little are looked for from where they stood ``last``.
+    Nodes that have moved a little are looked for from each ``face`` (n,) on which they stood.
     """
-    if last is None:
+    if face is None:
         near = surface.nearest(points)
         face, point = near.face, near.point.copy()
     else:
         mesh = (surface.points, surface.triangles, surface.neighbours, surface.neighbour_edge)
-        point, face = nearest_from(*mesh, points, last.face)
+        point, face = nearest_from(*mesh, points, face)
     part = (surface.points, surface.triangles, surface.neighbours, surface.normals, surface.areas, surface.on_rim)
     return Footing(point, *footing(*part, smooth_normals(surface), points, point, face))
 

@@ -12,7 +12,7 @@ import geomdrap as gd
 from geomdrap.fishnet.dissection import AFTER
 from geomdrap.fishnet.relax import relax
 from geomdrap.fishnet.relax_energy import Law, derivatives, energy
-from geomdrap.fishnet.relax_net import laid_on
+from geomdrap.fishnet.relax_net import gone_along
 from geomdrap.fishnet.relax_problem import HELD, chord_sines, pose, problem_of
 from geomdrap.fishnet.relax_surface import stand
 from geomdrap.surface import shapes
@@ -295,23 +295,26 @@ def test_a_net_relaxed_from_one_much_like_it_is_the_same():
     assert not near.warnings
     assert np.nanmax(np.linalg.norm(near.points - other.points, axis=2)) < 1e-3
     rounds = [int(net.notes[-1].split()[-2]) for net in (other, near)]
-    assert rounds[1] <= rounds[0]
+    assert rounds[1] < 0.7 * rounds[0]
 
 
 def test_yarns_that_the_other_net_has_not_go_the_way_of_their_neighbours():
     plane = shapes.plane(120.0, 100.0, 10.0)
-    small = gd.drape(plane, (1.0, 0.0, 0.0), 0.0, 10.0, reach=(20.0, 20.0))
+    small = gd.drape(plane, (0.0, 0.0, 0.0), 0.0, 10.0, reach=(20.0, 20.0))
     large = gd.drape(plane, (0.0, 0.0, 0.0), 0.0, 10.0, reach=(40.0, 30.0))
-    start = laid_on(large, small)
-    known = np.isfinite(large.lattice)
-    np.testing.assert_allclose((start - large.lattice)[known].reshape(-1, 3), [[1.0, 0.0, 0.0]] * (known.sum() // 3), atol=1e-9)
+    along = np.where(np.isfinite(small.lattice), [1.0, 0.0, 0.0], np.nan)
+    start = gone_along(large.lattice, large, replace(small, moved=along))
+    known = np.isfinite(large.lattice[..., 0])
+    np.testing.assert_allclose((start - large.lattice)[known], [[1.0, 0.0, 0.0]] * known.sum(), atol=1e-9)
 
 
 def test_beyond_the_rim_the_surface_goes_on_without_a_step():
     cap = shapes.sphere_cap(RADIUS, 60.0, 6.0)
     angle = np.linspace(0.0, np.pi, 4001)
     radius = np.linalg.norm(cap.points[:, :2], axis=1).max() + 4.0
-    goal = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(len(angle), cap.points[:, 2].min())])
+    goal = np.column_stack(
+        [radius * np.cos(angle), radius * np.sin(angle), np.full(len(angle), cap.points[:, 2].min())]
+    )
     standing = stand(cap, goal)
     assert (standing.outside > 1.0).all()
     step = np.linalg.norm(np.diff(standing.lifted, axis=0), axis=1)
@@ -333,5 +336,5 @@ def test_beside_a_vertex_of_the_rim_it_goes_on_whichever_facet_is_asked():
     for face in range(6):  # of the facets round each vertex
         around = [np.flatnonzero((cap.triangles == v).any(axis=1)) for v in rim]
         last = fresh._replace(face=np.array([f[face % len(f)] for f in around]))
-        again = stand(cap, goal, last)
+        again = stand(cap, goal, last.face)
         np.testing.assert_allclose(again.lifted, fresh.lifted, atol=1e-6)
