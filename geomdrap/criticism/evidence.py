@@ -57,9 +57,9 @@ class Evidence:
 
 def chance(gain: float, unknowns: int) -> float:
     """Probability of a gain as large by chance (S. S. Wilks, 1938)."""
-    from scipy.stats import chi2
+    from scipy.special import chdtrc
 
-    return float(chi2.sf(max(gain, 0.0), unknowns))
+    return float(chdtrc(unknowns, max(gain, 0.0)))
 
 
 def among_all(p_values: Sequence[float]) -> np.ndarray:

@@ -17,6 +17,7 @@ from geomdrap.fishnet.held_warp import HeldWarp
 from geomdrap.fishnet.relax_net import UNREST
 
 if TYPE_CHECKING:
+    from geomdrap.criticism.likelihood import Judge
     from geomdrap.fishnet.seed import Origin
     from geomdrap.measurement import Measurement
     from geomdrap.surface import Surface
@@ -64,8 +65,8 @@ class Experiment:
     entries of ``mask``, channel by channel. ``refused``: why a drape with an effect could not be made at some of the
     values tried, by its name; ``warnings`` of the table. ``frames`` (n, 3, 3): along the warp, across it, and the
     normal. What is costly is kept: ``surfaces`` with effects on them and how their facets were split (``splits``),
-    the ``coarseness`` of nets, and the last ``costly`` nets. ``coarser``: the pitch, mm, of the nets which those for
-    what is costly refine, None where they are the first.
+    the ``coarseness`` of nets, the last ``costly`` nets, and ``judges`` of some values. ``coarser``: the pitch, mm,
+    of the nets which those for what is costly refine, None where they are the first.
     """
 
     surface: Surface
@@ -85,6 +86,7 @@ class Experiment:
     costly: dict[str, Net] = field(default_factory=dict)
     splits: list[Split] = field(default_factory=list)
     last: dict[str, tuple[Sequence[Effect], Net | None]] = field(default_factory=dict)
+    judges: dict[bytes, Judge] = field(default_factory=dict)
     on_facets: bool = False
     coarser: float | None = None
 
@@ -196,7 +198,7 @@ class Experiment:
         """The same experiment without the values ``drop`` (n, c) bool."""
         kept = ~flatten(drop, self.mask)
         values = {"noise": self.noise[kept], "measured": self.measured[kept]}
-        return replace(self, mask=self.mask & ~drop, coarseness=[], **values)
+        return replace(self, mask=self.mask & ~drop, coarseness=[], judges={}, **values)
 
     def unsmoothed(self) -> Experiment:
         """The same experiment with nets on the facets themselves, not on the smooth tool that they stand for."""

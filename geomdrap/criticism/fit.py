@@ -48,7 +48,7 @@ def fit(
     most: int = STEPS,
     enough: float = math.inf,
     patience: int = 2 * FIRST_STEPS,
-    sloped: Predict | None = None,
+    small: float = SMALL,
 ) -> Fit:
     """Parameters (p,) between ``low`` and ``high`` with the least squares of ``whiten(measured - predict(p))``.
 
@@ -56,7 +56,7 @@ def fit(
     ``steps`` (p,) are the differences with which slopes are taken, where ``slopes`` (m, p) are not given. At
     most ``most`` steps are tried; a fit that is above a chi-square of ``enough`` ``FIRST_STEPS`` after the start, or
     after slopes were taken anew, but at the latest after ``patience`` steps, is given up.
-    ``sloped`` is what slopes are taken from: a cheaper prediction that changes alike; None for ``predict`` itself.
+    A step that promises or gains less than ``small`` of chi-square ends it.
     """
     values = np.clip(np.asarray(start, dtype=float), low, high)
     residual = measured - predict(values)
@@ -64,9 +64,8 @@ def fit(
     filled = np.where(lost, 0.0, residual)
     jacobian = np.zeros((len(residual), len(values))) if slopes is None else slopes.copy()
     free = np.flatnonzero(high > low)  # the others keep the slopes that they have
-    rough = sloped or predict
     if slopes is None:
-        jacobian[:, free] = take_slopes(rough, values, rough(values), steps, low, high, free)[:, free]
+        jacobian[:, free] = take_slopes(predict, values, predict(values), steps, low, high, free)[:, free]
     chi2 = _square(whiten(filled))
     damping = 0.0
     fresh, good = slopes is None, jacobian
@@ -80,7 +79,7 @@ def fit(
         step = _step(seen, whiten(filled), damping, values, low, high, moves)
         step *= min(1.0, FARTHEST / max(float(np.abs(step / steps).max()), 1e-300))
         foreseen = chi2 - _square(whiten(filled - jacobian @ step))
-        if (np.abs(step) <= LEAST_STEP * steps).all() or foreseen < SMALL:
+        if (np.abs(step) <= LEAST_STEP * steps).all() or foreseen < small:
             break
         there = predict(values + step)
         new = measured - there
@@ -94,10 +93,10 @@ def fit(
             values, filled, chi2, damping = values + step, new, new_chi2, 0.0
             lost = np.isnan(there)
             fresh, good = False, jacobian
-            if gain < SMALL:
+            if gain < small:
                 break
         elif not fresh:  # the slopes are worn: take them anew, once for each place
-            jacobian[:, free] = take_slopes(rough, values, rough(values), steps, low, high, free)[:, free]
+            jacobian[:, free] = take_slopes(predict, values, predict(values), steps, low, high, free)[:, free]
             fresh, first, good = True, min(max(first, tried + 1 + FIRST_STEPS), patience), jacobian
         else:
             jacobian = good  # what a refused step has shown, beyond a threshold it may be, is no slope here

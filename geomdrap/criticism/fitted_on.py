@@ -17,9 +17,9 @@ from geomdrap.effects import make
 if TYPE_CHECKING:
     from geomdrap.criticism.experiment import Experiment
 
-PLACED = 3  # parameters of the placement, before all others
 REFINEMENTS = 5  # steps on a finer net
 MORE_STEPS = 18  # of a costly fit, if it is the best
+CREEP = 2e-3  # of its chi-square: steps that gain less do not make it another one
 MOSTLY = 0.9  # of the values: a net that predicts fewer is not compared with another
 
 
@@ -33,7 +33,7 @@ def further(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     if idle or is_noise(old.fit.chi2, len(old.fit.residual)):
         return old
     way = old.values, model.steps, *model.bounds, old.fit.slopes, MORE_STEPS
-    found = fit(predictor(experiment, model), experiment.measured, whiten, *way)
+    found = fit(predictor(experiment, model), experiment.measured, whiten, *way, small=CREEP * old.fit.chi2)
     return Fitted(model, found) if found.chi2 < old.fit.chi2 else old
 
 
@@ -46,22 +46,15 @@ def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
 
 
 def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
-    """A costly model fitted on from where it was, on the finer nets of ``finer``, with slopes of the coarser ones.
+    """A costly model fitted on from where it was, on the finer nets of ``finer``.
 
     Nets are of second order in the pitch: of what a pitch ``ratio`` times smaller changed in the values,
     1/(ratio² - 1) is left, a third where it was halved. Where no step was taken, nothing is known of it.
     """
     model = old.model
-    fine, coarse = predictor(finer, model), predictor(coarser, model)
-    low, high = model.bounds
-    # how the heading of the first side turns the net depends on that side's length: the ply is placed anew first
-    own = slice(PLACED, None)
-    held = low.copy(), high.copy()
-    held[0][own] = held[1][own] = old.values[own]
-    way = old.values, model.steps, *held, old.fit.slopes, REFINEMENTS
-    found = fit(fine, finer.measured, whiten, *way, sloped=coarse)
-    # where it has turned to, worn slopes hide how heading and stiffness make up for each other
-    found = fit(fine, finer.measured, whiten, found.values, model.steps, low, high, None, REFINEMENTS, sloped=coarse)
+    # slopes of the coarser ones, or worn ones, would hide how heading and stiffness make up for each other
+    way = old.values, model.steps, *model.bounds, None, REFINEMENTS
+    found = fit(predictor(finer, model), finer.measured, whiten, *way)
     ratio, moved = coarser.pitches[1] / finer.pitches[1], np.abs(found.values - old.values)
     return Fitted(model, found, moved / (ratio**2 - 1.0) if ratio > 1.0 and moved.any() else None)
 

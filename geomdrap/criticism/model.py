@@ -27,6 +27,7 @@ FEW_STEPS = 7  # of a fit whose every drape is costly
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
 NEARLY = 0.02  # of the misfit: a model that leaves less, and little beside the noise, has explained nearly all of it
 HOPELESS = 0.5  # of the way from the best model back to the base
+NO_RIVAL = 0.85  # the same, where the best model explains half of the misfit
 FAR = 0.1  # the same, where the best model leaves next to nothing and a few values were probed
 
 
@@ -170,7 +171,7 @@ def look_at(experiment: Experiment, whiten: Whiten, likely: Whiten, base: Fitted
 def slow(effect: str) -> bool:
     """Whether a drape with an effect takes long."""
     kind = make(effect)
-    return kind.costly or kind.stage == "surface"
+    return kind.slow or kind.costly or kind.stage == "surface"
 
 
 def add_effect(
@@ -190,11 +191,11 @@ def add_effect(
     model, predict, kind, seen = look.model, look.predict, make(look.effect), look.seen
     values = len(experiment.measured)
     explained = seen is not None and is_noise(least, values)
-    # where much of the misfit is not explained one look is too little to give it up
+    # the more of the misfit is explained, the less a look must promise to be given up
     nearly = explained or least - values < min(NEARLY * (base.fit.chi2 - values), 2.0 * values)
-    if seen is not None and (
-        seen.gain < LEAST_GAIN or (nearly and _hopeless(whiten, base, seen.after, least, HOPELESS))
-    ):
+    half = least - values < 0.5 * (base.fit.chi2 - values)
+    too_far = HOPELESS if nearly else NO_RIVAL if half else math.inf
+    if seen is not None and (seen.gain < LEAST_GAIN or _hopeless(whiten, base, seen.after, least, too_far)):
         return _not_fitted(model, base, seen)
     start = start_values(experiment, predict, whiten, base, look.effect, seen, turns)
     low, high = model.bounds

@@ -11,6 +11,7 @@ from geomdrap.criticism.evidence import Evidence, among_all, chance
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fitted_on import again, further
 from geomdrap.criticism.holdout import blocks_of, held_out_error
+from geomdrap.criticism.kept import kept
 from geomdrap.criticism.likelihood import Judge, Residuals, Scatter, deviations
 from geomdrap.criticism.model import Fitted, Look, Whiten, add_effect, look_at, slow
 from geomdrap.criticism.start import TURNS
@@ -18,6 +19,7 @@ from geomdrap.effects import make
 
 CLEAR = 3.0  # standard deviations from nothing
 TURN = 2  # of the parameters: the heading
+JUDGES = 2  # kept: each some 100 MB at 400 points
 CLIMB = 3  # models for which the likeliest scatter is searched: the base and the best two
 
 
@@ -136,10 +138,14 @@ def _predicts(model: Fitted) -> bool:
 
 
 def judge_of(experiment: Experiment, rows: np.ndarray) -> Judge:
-    """A judge of those values (m,) bool of an experiment."""
-    mask = np.zeros_like(experiment.mask)
-    mask.T[experiment.mask.T] = rows
-    return Judge(experiment.at, experiment.channels, mask, experiment.noise[rows], unit_of(experiment))
+    """The judge of those values (m,) bool of an experiment."""
+
+    def make() -> Judge:
+        mask = np.zeros_like(experiment.mask)
+        mask.T[experiment.mask.T] = rows
+        return Judge(experiment.at, experiment.channels, mask, experiment.noise[rows], unit_of(experiment))
+
+    return kept(experiment.judges, rows.tobytes(), make, JUDGES)
 
 
 def unit_of(experiment: Experiment) -> float:

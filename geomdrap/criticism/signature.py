@@ -42,9 +42,9 @@ def least_visible(signature: np.ndarray, tried: int, level: float) -> np.ndarray
 
     The others of the same effect are free; infinite where the points do not see it.
     """
-    from scipy.stats import norm
+    from scipy.special import ndtri
 
-    needed = float(norm.isf(level / (2.0 * max(tried, 1)))) + POWER
+    needed = POWER - float(ndtri(level / (2.0 * max(tried, 1))))
     size = np.linalg.norm(signature, axis=0)
     out = np.full(signature.shape[1], np.inf)
     seen = size > 1e-9

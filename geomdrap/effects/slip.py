@@ -22,6 +22,7 @@ class Slip(Effect):
     stage = "fabric"
     seen_by = "marked crossings, shear, fibre directions"
     confounded_with = ("crossing-slip", "yarn-extension")
+    slow = True
     parameters = (
         Parameter("coefficient", "", 0.0, 1.0, 0.3, 0.0, "0: pinned crossings; 1: warp yarns keep their distance"),
     )

@@ -27,10 +27,11 @@ class Effect:
     What a subclass says of itself: ``name``, by which it is found; ``summary``, one sentence; ``equation``, plain
     text; ``physics``, two or three sentences; ``source``; ``stage``, one of surface, placement, fabric, net;
     ``parameters``; ``seen_by``, the data that can show it; ``confounded_with``, names of effects that look alike.
-    ``rank`` orders effects of one stage; ``costly`` says that a net with it takes many times as long as without;
-    ``acts_at_once`` that the smallest values act as fully as others, so that ``diagnose`` finds it wherever it is not
-    neutral, and does not ask that its values differ clearly from their neutral ones; ``includes`` names effects that
-    it comes to at small values: beside these it must do better, and with a value that is clearly not small.
+    ``rank`` orders effects of one stage; ``slow`` and ``costly`` say that a net with it takes a few, or many, times
+    as long as without; ``acts_at_once`` that the smallest values act as fully as others, so that ``diagnose`` finds
+    it wherever it is not neutral, and does not ask that its values differ clearly from their neutral ones;
+    ``includes`` names effects that it comes to at small values: beside these it must do better, and with a value that
+    is clearly not small.
     ``values`` are its parameters' values by name.
     Raises EffectError for parameters that it does not have, and values out of bounds.
     """
@@ -45,6 +46,7 @@ class Effect:
     seen_by: ClassVar[str] = ""
     confounded_with: ClassVar[tuple[str, ...]] = ()
     rank: ClassVar[float] = 100.0
+    slow: ClassVar[bool] = False
     costly: ClassVar[bool] = False
     acts_at_once: ClassVar[bool] = False
     includes: ClassVar[tuple[str, ...]] = ()

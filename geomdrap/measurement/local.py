@@ -19,9 +19,9 @@ MAD_TO_SIGMA = 1.4826
 
 def quantile_of_size(share: float, width: int) -> float:
     """Quantile of the length of ``width`` independent normal numbers."""
-    from scipy.stats import chi2
+    from scipy.special import chdtri
 
-    return float(np.sqrt(chi2.ppf(share, width)))
+    return float(np.sqrt(chdtri(width, 1.0 - share)))
 
 
 def robust_sigma(values: np.ndarray) -> float:

@@ -155,13 +155,13 @@ def _filled(
 
 def _disagreement(name: str, noise: Noise, repeats: float, freedom: int) -> tuple[str, ...]:
     """A warning where repeats scatter otherwise than the noise that was given, beyond chance."""
-    from scipy.stats import chi2
+    from scipy.special import chdtr, chdtrc
 
     said = noise.typical
     if freedom < LEAST_REPEATS or said is None or noise.source == REPEATS:
         return ()
     ratio = repeats / said
-    p = 2.0 * min(chi2.sf(freedom * ratio**2, freedom), chi2.cdf(freedom * ratio**2, freedom))
+    p = 2.0 * min(chdtr(freedom, freedom * ratio**2), chdtrc(freedom, freedom * ratio**2))
     if p > 1e-3 or 1.0 / DISAGREE < ratio < DISAGREE:
         return ()
     word = "more" if ratio > 1.0 else "less"

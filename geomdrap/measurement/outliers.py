@@ -95,15 +95,15 @@ def _stand_out(places: np.ndarray, values: np.ndarray, sigma: np.ndarray | None)
 
 def _excess(width: int) -> float:
     """Factor that makes a limit for one normal number as strict for the size of ``width`` of them."""
-    from scipy.stats import chi2
+    from scipy.special import chdtri
 
-    return float(chi2.isf(2.0 * _tail(), width) / LIMIT**2)
+    return float(chdtri(width, 2.0 * _tail()) / LIMIT**2)
 
 
 def _tail() -> float:
-    from scipy.stats import norm
+    from scipy.special import ndtr
 
-    return float(norm.sf(LIMIT))
+    return float(ndtr(-LIMIT))
 
 
 def _label_shift(net: Net, measurement: Measurement, row: int, trend: np.ndarray) -> tuple[int, int] | None:
