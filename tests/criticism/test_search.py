@@ -13,7 +13,7 @@ from geomdrap.criticism.diagnose import _teller
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.fitted_on import again, further
-from geomdrap.criticism.model import Fitted, Look, Model
+from geomdrap.criticism.model import Fitted, Look, Model, add_effect
 from geomdrap.criticism.start import Glance, glance, start_values
 from geomdrap.measurement.outliers import Outlier
 
@@ -69,10 +69,36 @@ def test_the_slow_effect_that_a_look_favours_is_tried_first(monkeypatch):
     monkeypatch.setattr(search, "look_at", look_at)
     monkeypatch.setattr(search, "_likely", lambda *_: whiten)
     told = []
-    names = ("bridging", "slip", "locking", "shear-stiffness")
+    names = ("bridging", "steering", "locking", "shear-stiffness")
     order = [look.effect for look in search._looks(None, None, whiten, names, told.append)]
-    assert order == ["slip", "locking", "shear-stiffness", "bridging"]
+    assert order == ["steering", "locking", "shear-stiffness", "bridging"]
     assert len(told) + len(order) == search.steps_of(names)
+
+
+@pytest.mark.parametrize(
+    ("best", "left", "tried"),
+    [(0.4, 0.8, True), (0.4, 0.95, False), (0.6, 0.95, True), (0.0004, 0.6, False)],
+)
+def test_the_more_another_effect_explains_the_more_a_look_must_promise(best, left, tried):
+    """``best`` is what the best effect so far leaves of the misfit, ``left`` the look's share of the way to it."""
+    measured = 10.0 * np.sin(5.0 * AT[:, 0])
+    base = base_at((0.0, 0.0, 0.0), measured)
+    beside = measured - PLACES @ np.linalg.lstsq(PLACES, measured, rcond=None)[0]
+    before = float((whiten(beside) ** 2).sum())
+    base = replace(base, fit=replace(base.fit, chi2=before))
+    least = POINTS + best * (before - POINTS)
+    asked = []
+
+    def predict(v):
+        asked.append(v)
+        return PLACES @ v[:3] + v[3] * AT[:, 1]
+
+    seen = Glance(np.array([0.003]), AT[:, 1], 100.0, least + left * (before - least))
+    look = Look("shear-asymmetry", Model(("shear-asymmetry",)), predict, seen)
+    experiment = SimpleNamespace(measured=measured, top_shear=30.0)
+    found = add_effect(experiment, whiten, base, look, least)
+    assert found.looked_at_only is not tried
+    assert bool(asked) is tried
 
 
 def test_progress_never_goes_back_whatever_the_number_of_rounds():
