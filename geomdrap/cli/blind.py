@@ -59,16 +59,19 @@ def make(folder: Path, as_json: bool, **wanted: Any) -> None:
     """
     from geomdrap.blind import make as make_set
     from geomdrap.blind import read_seal
-    from geomdrap.cli.messages import print_json
+    from geomdrap.cli.messages import print_json, say
     from geomdrap.export.whole import check_writable
 
     check_writable(folder)
     made = make_set(folder=folder, **wanted)
-    for old in ("solved.json", "revealed.json"):
-        (made / old).unlink(missing_ok=True)  # of a set that was there before
+    old = [name for name in ("solved.json", "revealed.json") if (made / name).exists()]
+    for name in old:
+        (made / name).unlink()
+    say((f"{made / name} was of the set that lay here before, and is removed" for name in old), (), quiet=False)
     if as_json:
         files = [str(made / name) for name in ("part.stl", "measured.csv", "setup.toml", "truth.sealed", "seal.txt")]
-        print_json({"schema": "geomdrap.blind-make/1", "folder": str(made), "seal": read_seal(made), "files": files})
+        told = {"folder": str(made), "seal": read_seal(made), "files": files, "removed": old}
+        print_json({"schema": "geomdrap.blind-make/1", **told})
         return
     click.echo(f"wrote {made}: part.stl, measured.csv, setup.toml, truth.sealed\nseal {read_seal(made)}")
 
@@ -94,7 +97,7 @@ def solve(folder: Path, as_json: bool, quiet: bool) -> None:
     announce_compilation(quiet)
     with Progress(quiet) as progress:
         progress.step("Diagnosing")
-        diagnosis = gd.diagnose(**_read(folder), progress=lambda share, _: progress.share(share))
+        diagnosis = gd.diagnose(**_read(folder), progress=progress.share)
     record = write_solved(folder, diagnosis.as_dict())
     if as_json:
         print_json(record)
@@ -151,9 +154,9 @@ def _lines(result: dict[str, Any]) -> list[str]:
         lines.append(f"  {row['parameter']:16} true {row['true']:.4g}, {_found(row)}")
     if truth["placement"]:
         off = "du {du:.2f} mm, dv {dv:.2f} mm, dangle {dangle:.2f} deg".format(**truth["placement"])
-        lines.append(f"  placement        {off}")
+        lines.append(f"  placement        true {off} from where setup.toml has it")
     if truth["scatter"]:
-        lines.append("  scatter          {sd:.2f} mm over {length:.0f} mm".format(**truth["scatter"]))
+        lines.append("  lay-up scatter   true {sd:.2f} mm over {length:.0f} mm".format(**truth["scatter"]))
     return lines
 
 

@@ -79,7 +79,7 @@ def diagnose(
         ready = read_asked(part, measured, **asked)
         announce_compilation(quiet)
         progress.step("Diagnosing")
-        result = gd.diagnose(ready.surface, ready.measurement, **ready.laid, progress=lambda s, _: progress.share(s))
+        result = gd.diagnose(ready.surface, ready.measurement, **ready.laid, progress=progress.share)
         progress.step("Writing")
         files = write_diagnosis(result, folder, outputs)
     say(result.warnings, (*ready.notes, *result.notes), quiet)

@@ -63,7 +63,7 @@ def improve(
         ready = read_asked(part, measured, **asked)
         announce_compilation(quiet)
         progress.step("Improving")
-        result = gd.improve(ready.surface, ready.measurement, **ready.laid, progress=lambda s, _: progress.share(s))
+        result = gd.improve(ready.surface, ready.measurement, **ready.laid, progress=progress.share)
         progress.step("Writing")
         files = write_improvement(result, model)
     say(result.diagnosis.warnings, (*ready.notes, *result.diagnosis.notes), quiet)

@@ -77,13 +77,13 @@ def diagnose(
         experiment, notes = prepare(surface, measurement, layup, sigma_xyz, sigma_shear, sigma_direction)
         notes = (*notes, *bare)
         rounds = search(experiment, names, progress)
-        clean = cleaned(experiment, rounds[-1].closest)
+        passed, clean = 0, cleaned(experiment, rounds[-1].closest)
         if clean is not None:
             rows = flatten(clean.mask, experiment.mask)
             models = [rounds[0].base, *(trial for r in rounds for trial in r.trials)]
             known = [m.only(rows, clean.noise) for m in models]
-            experiment, rounds = clean, search(clean, names, progress, len(rounds), known)
-        return conclude(experiment, rounds, notes)
+            passed, experiment, rounds = len(rounds), clean, search(clean, names, progress, len(rounds), known)
+        return conclude(experiment, rounds, notes, _refining(progress, passed + len(rounds)))
 
 
 def search(
@@ -118,6 +118,12 @@ def _teller(progress: Progress, passed: int, count: int) -> Callable[[str], None
     told = iter(range(count))
     # how many rounds there will be is not known: each takes half of what is left
     return lambda name: progress(1.0 - 0.5**passed * (1.0 - 0.5 * next(told) / count), f"trying {name}")
+
+
+def _refining(progress: Progress, passed: int) -> Callable[[str], None]:
+    """Likewise for what is fitted on after ``passed`` rounds."""
+    told = iter(range(passed + 1, 1000))
+    return lambda name: progress(1.0 - 0.5 ** next(told), f"refining {name}")
 
 
 def chosen(rounds: Sequence[Round]) -> str | None:
@@ -160,15 +166,20 @@ def left_over(experiment: Experiment, model: Fitted, scatter: Scatter) -> Leftov
     return leftover(experiment, rows, judge, Residuals(model.fit.residual[rows], model.fit.slopes[rows]), scatter)
 
 
-def conclude(experiment: Experiment, rounds: Sequence[Round], notes: tuple[str, ...]) -> Diagnosis:
-    """The verdict on a finished search."""
+def conclude(
+    experiment: Experiment,
+    rounds: Sequence[Round],
+    notes: tuple[str, ...],
+    done: Callable[[str], None] = lambda name: None,
+) -> Diagnosis:
+    """The verdict on a finished search. ``done`` is told the name of each effect that is fitted on."""
     names, model, scatter = found_by(rounds)
     meant = experiment
     alike: tuple[str, ...] = ()
     ends: dict[str, tuple[Experiment, Fitted]] = {}
     if names:
         k = len(names) - 1
-        ends, seen = told_apart(meant, rounds[k], contenders(rounds[k].evidence))
+        ends, seen = told_apart(meant, rounds[k], contenders(rounds[k].evidence), done)
         alike, rounds = tuple(ends), [*rounds[:k], seen, *rounds[k + 1 :]]
         names, scatter = [*names[:k], alike[0]], seen.trial(alike[0])[1]
     experiment, model = ends[alike[0]] if alike else final(meant, model, scatter)

@@ -5,7 +5,7 @@ On a coarse net a model of another effect may do as well, for what it makes up o
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -71,14 +71,17 @@ def contenders(evidence: Sequence[Evidence]) -> tuple[str, ...]:
 
 
 def told_apart(
-    experiment: Experiment, last: Round, alike: Sequence[str]
+    experiment: Experiment, last: Round, alike: Sequence[str], done: Callable[[str], None]
 ) -> tuple[dict[str, tuple[Experiment, Fitted]], Round]:
     """The contenders ``alike`` that finer nets leave, the best first, fitted to the end; the round as those see it.
 
     ``last`` is the round of the search that found them. What nets on which costly ones could not be fitted do not
-    tell apart stays as it was.
+    tell apart stays as it was. ``done`` is told each name.
     """
-    ends = {name: final(experiment, *last.trial(name)) for name in alike}
+    ends = {}
+    for name in alike:
+        done(name)
+        ends[name] = final(experiment, *last.trial(name))
     costly = [name for name in alike if make(name).costly]
     if len(alike) < 2 or not costly or any(ends[name][0] is experiment for name in costly):
         return {name: ends[name] for name in rivals(last.evidence)}, last

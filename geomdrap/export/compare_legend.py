@@ -20,7 +20,7 @@ QUIET = 1.5
 
 
 def key_figures(comparison: Comparison) -> list[tuple[str, str, str]]:
-    """Figure, its words, its colour."""
+    """Figure, its words, its colour; without the outliers, as they are set apart in the pictures."""
     scores = comparison.scores
     kind = "position, rms" if comparison.measurement.labelled else "off the part, rms"
     out = [_figure(scores.position, f"{kind}", " mm")]
@@ -40,8 +40,8 @@ def _figure(score: Score | None, words: str, unit: str) -> tuple[str, str, str]:
     if score is None:
         return "–", words, palette.FAINT
     noise = "noise not known" if score.noise is None else f"noise alone: {score.noise:.2g}{unit}"
-    loud = score.noise is not None and score.rms > QUIET * score.noise
-    return f"{score.rms:.3g}{unit}", f"{words}\n{noise}", palette.HIGH if loud else palette.INK
+    loud = score.noise is not None and score.robust_rms > QUIET * score.noise
+    return f"{score.robust_rms:.3g}{unit}", f"{words}\n{noise}", palette.HIGH if loud else palette.INK
 
 
 def draw_size_bar(figure: Any, box: tuple[float, float, float, float], scale: CompareScale) -> None:

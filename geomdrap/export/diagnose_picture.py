@@ -73,7 +73,7 @@ def _words(diagnosis: Diagnosis) -> tuple[list[str], list[str]]:
         *diagnosis.hints,
         *unseen_sentences(diagnosis),
     ]
-    lines = [text for sentence in more if sentence for text in textwrap.wrap(sentence, 190)]
+    lines = [text for s in more if s for text in textwrap.wrap(s[0].upper() + s[1:], 190)]
     return textwrap.wrap(verdict_sentence(diagnosis), 92), lines
 
 

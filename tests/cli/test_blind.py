@@ -81,7 +81,9 @@ def test_a_new_set_in_an_old_folder_is_not_solved(tmp_path, monkeypatch):
     monkeypatch.setattr(gd, "diagnose", lambda surface, measurement, **laid: Found("none"), raising=False)
     run("make", "--effect", "none", "-o", tmp_path)
     run("solve", tmp_path)
-    run("make", "--effect", "none", "-o", tmp_path)
+    _, out, err = run("make", "--effect", "none", "-o", tmp_path, "--json")
+    assert json.loads(out)["removed"] == ["solved.json"]
+    assert "solved.json" in err
     assert run("reveal", tmp_path)[0] == 2
 
 

@@ -125,7 +125,9 @@ def test_rivals_on_a_coarse_net_are_told_apart_by_finer_ones(monkeypatch, behind
         return rested, replace(model, fit=replace(model.fit, residual=residual))
 
     monkeypatch.setattr(last, "final", final)
-    ends, seen = last.told_apart(meant, of, names)
+    told = []
+    ends, seen = last.told_apart(meant, of, names, told.append)
+    assert told == list(names)
     assert list(ends) == left
     gains = {e.name: e.gain for e in seen.evidence}
     # confidence weighs by these

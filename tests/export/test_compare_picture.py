@@ -55,7 +55,7 @@ def test_one_scale_holds_both_comparisons(before, after):
 
 def test_the_page_says_the_numbers_the_factor_and_the_worst_place(before):
     words = _words(figure_of(before))
-    assert f"{before.scores.position.rms:.3g} mm" in words
+    assert f"{before.scores.position.robust_rms:.3g} mm" in words
     assert f"× {scale_of([before]).factor:g}" in words
     assert "Worst:" in words
     assert "noise alone" in words
@@ -87,6 +87,22 @@ def test_loud_numbers_are_in_alarm_colours_and_quiet_ones_are_not(before):
     assert colours[0] != colours[1]  # positions at the noise, shear above it
     loud = [colour for _, _, colour in key_figures(before)]
     assert loud[0] == loud[1] == colours[1]
+
+
+def test_an_outlier_makes_no_number_loud(before):
+    m = replace(before.measurement.take(np.flatnonzero(before.used)), shear=None)
+    there, _ = before.net.interpolate(m.u, m.v)
+    points = there + np.random.default_rng(3).normal(0.0, 0.2, there.shape)
+    colours, numbers = [], []
+    for off in (0.0, 40.0):
+        points[7, 2] += off
+        got = compare_net(before.net, replace(m, points=points), sigma_xyz=0.2)
+        assert bool(got.outliers) is (off > 0.0)
+        number, _, colour = key_figures(got)[0]
+        numbers.append(float(number.split()[0]))
+        colours.append(colour)
+    assert colours[0] == colours[1]
+    assert numbers[1] == pytest.approx(numbers[0], rel=0.02)
 
 
 def test_pages_are_written_as_pictures(before, after, tmp_path):
