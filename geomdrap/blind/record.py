@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from geomdrap.blind.judge import GOOD, grade, parameters
-from geomdrap.blind.seal import read_seal, unseal
+from geomdrap.blind.seal import hashes, read_seal, unseal
 from geomdrap.errors import GeomdrapError
 
 SOLVED, REVEALED = "solved.json", "revealed.json"
@@ -45,17 +45,25 @@ def write_solved(folder: Path, diagnosis: Mapping[str, Any]) -> dict[str, Any]:
 def reveal(folder: Path, anyway: bool = False) -> dict[str, Any]:
     """Check the seal, show the truth and grade the verdict; written to revealed.json.
 
-    GeomdrapError if the seal is broken, if the verdict was given for another seal, or if there is none, unless
-    ``anyway``: then ``grade`` is None.
+    GeomdrapError if the seal is broken or the verdict was given for another one, and, unless ``anyway``, if there is
+    no verdict, or if a file of the set is not the one that was sealed (``changed``): ``grade`` is None then.
     """
     truth = unseal(folder)
+    now = hashes(folder)
+    changed = [name for name, before in truth["files"].items() if now.get(name) != before]
+    if changed and not anyway:
+        raise GeomdrapError(
+            f"{folder / changed[0]} is not the file that was sealed, so a verdict on it proves nothing; make the set "
+            "again, or reveal it --anyway"
+        )
     solved = _read_solved(folder)
     if solved is None and not anyway:
         raise GeomdrapError(f"{folder} is not solved yet; run geomdrap blind solve first, or reveal it --anyway")
     result: dict[str, Any] = {"schema": "geomdrap.blind-reveal/1", "seal": read_seal(folder), "truth": truth}
     result.update({"revealed_at": _now(), "verdict": None, "candidates": [], "grade": None, "right": None})
+    result["changed"] = changed
     result["parameters"] = parameters(truth, solved["diagnosis"] if solved else {})
-    if solved is not None:
+    if solved is not None and not changed:
         told = grade(truth["answer"], solved["verdict"], solved["candidates"])
         found = {key: solved[key] for key in ("verdict", "candidates", "confidence", "solved_at")}
         result.update({**found, "grade": told, "right": told in GOOD})

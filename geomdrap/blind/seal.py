@@ -1,7 +1,8 @@
 """A sealed truth: not readable at a glance, and provably the same before and after.
 
 ``seal.txt`` holds the SHA-256 of the truth's text and a random salt, fit to be printed before anybody solves the
-set; ``truth.sealed`` holds both, masked. This guards against looking by accident, not against an attacker.
+set; ``truth.sealed`` holds both, masked. The truth holds the hashes of the files that it is the truth about. This
+guards against looking by accident, not against an attacker.
 """
 
 from __future__ import annotations
@@ -16,11 +17,13 @@ from typing import Any
 from geomdrap.errors import GeomdrapError
 
 SALT = 16
+OPEN = ("part.stl", "measured.csv", "setup.toml")
+"""Files of a set that are for everybody to see."""
 
 
 def seal(folder: Path, truth: dict[str, Any]) -> str:
-    """Write ``truth`` sealed into ``folder``; gives the hash."""
-    text, salt = json.dumps(truth, indent=1).encode(), secrets.token_bytes(SALT)
+    """Write ``truth`` sealed into ``folder``, with the hashes of the files there; gives the hash."""
+    text, salt = json.dumps({**truth, "files": hashes(folder)}, indent=1).encode(), secrets.token_bytes(SALT)
     (folder / "truth.sealed").write_bytes(base64.encodebytes(salt + _masked(text, salt)))
     found = hashlib.sha256(text + salt).hexdigest()
     (folder / "seal.txt").write_text(found + "\n", encoding="utf-8")
@@ -47,6 +50,12 @@ def unseal(folder: Path) -> dict[str, Any]:
         raise GeomdrapError(f"the seal of {folder} is broken: truth.sealed is not what seal.txt was made for")
     truth: dict[str, Any] = json.loads(text)
     return truth
+
+
+def hashes(folder: Path) -> dict[str, str]:
+    """SHA-256 of the open files that are in ``folder``, by their names."""
+    there = [name for name in OPEN if (folder / name).exists()]
+    return {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in there}
 
 
 def _masked(text: bytes, salt: bytes) -> bytes:

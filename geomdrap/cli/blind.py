@@ -119,7 +119,7 @@ def _read(folder: Path) -> dict[str, Any]:
 
 @blind.command()
 @click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--anyway", is_flag=True, help="Show the truth of a set that is not solved; it takes no verdict then.")
+@click.option("--anyway", is_flag=True, help="Show the truth of a set that is not solved, or was changed: it is not graded.")
 @json_option
 def reveal(folder: Path, anyway: bool, as_json: bool) -> int:
     """Check the seal of the set in FOLDER and show what was hidden beside what was found.
@@ -147,6 +147,8 @@ def _lines(result: dict[str, Any]) -> list[str]:
     truth = result["truth"]
     hidden = f"{truth['answer']} ({', '.join(truth['effect'])})" if truth["answer"] == "unknown" else truth["answer"]
     lines = [f"seal {result['seal']} holds", f"hidden  {hidden}"]
+    if result["changed"]:
+        lines.append(f"changed {', '.join(result['changed'])}: not what was sealed, so nothing is graded")
     if result["grade"] is not None:
         rivals = f" ({', '.join(result['candidates'])})" if result["verdict"] == "ambiguous" else ""
         lines += [f"found   {result['verdict']}{rivals}", f"grade   {result['grade']}"]

@@ -23,7 +23,7 @@ FOUND = {
 
 def test_the_truth_comes_back_and_the_hash_is_that_of_its_text_and_salt(tmp_path):
     found = seal(tmp_path, TRUTH)
-    assert unseal(tmp_path) == TRUTH
+    assert unseal(tmp_path) == {**TRUTH, "files": {}}
     assert found == read_seal(tmp_path)
     assert len(found) == len(hashlib.sha256().hexdigest())
 
@@ -58,7 +58,7 @@ def test_a_set_is_not_revealed_before_it_is_solved_unless_anyway_and_takes_no_ve
     with pytest.raises(GeomdrapError, match="not solved"):
         reveal(tmp_path)
     shown = reveal(tmp_path, anyway=True)
-    assert (shown["truth"], shown["grade"], shown["right"]) == (TRUTH, None, None)
+    assert (shown["truth"], shown["grade"], shown["right"]) == ({**TRUTH, "files": {}}, None, None)
     with pytest.raises(GeomdrapError, match="revealed"):
         write_solved(tmp_path, FOUND)
 
@@ -79,6 +79,19 @@ def test_a_verdict_for_another_seal_does_not_count(tmp_path):
     seal(tmp_path, TRUTH)
     with pytest.raises(GeomdrapError, match="another seal"):
         reveal(tmp_path)
+
+
+def test_a_verdict_on_another_table_than_the_sealed_one_does_not_count(tmp_path):
+    (tmp_path / "measured.csv").write_text("x,y,z\n1,2,3\n")
+    seal(tmp_path, TRUTH)
+    write_solved(tmp_path, FOUND)
+    (tmp_path / "measured.csv").write_text("x,y,z\n1,2,4\n")
+    with pytest.raises(GeomdrapError, match=r"measured\.csv is not the file that was sealed"):
+        reveal(tmp_path)
+    shown = reveal(tmp_path, anyway=True)
+    assert (shown["changed"], shown["grade"]) == (["measured.csv"], None)
+    (tmp_path / "measured.csv").write_text("x,y,z\n1,2,3\n")
+    assert reveal(tmp_path)["grade"] == "right"
 
 
 def test_a_folder_that_is_no_set_is_refused(tmp_path):
