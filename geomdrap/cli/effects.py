@@ -57,6 +57,7 @@ def effects(name: str | None, plugins: tuple[Path, ...], folder: Path | None, as
 def _draw(text: str, folder: Path) -> dict[str, Path]:
     """Draw the signature of an effect, at values that show on the sample where none are given."""
     from geomdrap import effects as library
+    from geomdrap.cli.progress import Progress, announce_compilation
     from geomdrap.export.signature import shown_values, write_signature
     from geomdrap.export.whole import check_writable
 
@@ -68,7 +69,10 @@ def _draw(text: str, folder: Path) -> dict[str, Path]:
         effect = type(effect)(**shown_values(effect))
     check_writable(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    return {"signature": write_signature(effect, folder)}
+    announce_compilation(quiet=False)
+    with Progress() as progress:
+        progress.step("Drawing")
+        return {"signature": write_signature(effect, folder)}
 
 
 def _as_dict(effect: type[Effect]) -> dict[str, Any]:

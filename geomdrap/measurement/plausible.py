@@ -62,13 +62,21 @@ def require_on_part(surface: Surface, measurement: Measurement) -> tuple[str, ..
     extent = float(np.linalg.norm(np.ptp(points, axis=0)))
     unit = _other_unit(surface, points) if distance > OFF * size or extent < SMALL * size else None
     if unit is not None:
+        sizes = f"the points span {extent:.4g} mm and the part {size:.4g} mm"
+        if _labels_agree(measurement, 1.0):
+            if distance < FITS * extent:
+                return ()
+            raise MeasurementError(
+                f"{measurement.source}: {sizes}, but labels and points of the table agree with one another, so "
+                f"{surface.source} is read in the wrong unit: check --unit"
+            )
         hint = (
-            f"{measurement.source}: the points span {extent:.4g} mm and the part {size:.4g} mm; in {unit} they would "
-            f"lie on the part: use --unit-measured {unit}"
+            f"{measurement.source}: {sizes}; in {unit} they would lie on the part: use --unit-measured {unit}, if "
+            "--unit is right"
         )
         if distance > OFF * size or extent < TINY * size or _labels_agree(measurement, FACTORS[unit]):
             raise MeasurementError(hint)
-        return (hint + " if so",)
+        return (hint,)
     if distance > OFF * size:
         raise MeasurementError(
             f"{measurement.source}: half of the points lie {distance:.4g} mm or more off {surface.source}, which is "

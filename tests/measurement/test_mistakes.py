@@ -101,6 +101,21 @@ def test_points_in_another_unit_are_refused_and_the_unit_named(case, unit, facto
     assert f"--unit-measured {unit}" in said
 
 
+@pytest.mark.parametrize("factor", [10.0, 25.4, 1000.0])
+def test_a_part_in_another_unit_is_refused_and_not_the_table_blamed(case, factor):
+    net, m = case
+    large = gd.Surface(net.surface.points * factor, net.surface.triangles)
+    with pytest.raises(gd.MeasurementError, match=r"read in the wrong unit: check --unit$"):
+        require_on_part(large, m)
+
+
+def test_a_small_patch_of_a_flat_part_is_no_mistake_though_in_cm_it_would_lie_on_it_too():
+    plate = gd.Surface([[-100.0, -100, 0], [100, -100, 0], [100, 100, 0], [-100, 100, 0]], [[0, 1, 2], [0, 2, 3]])
+    u, v = (a.ravel() for a in np.meshgrid(np.arange(-10.0, 11.0, 5.0), np.arange(-10.0, 11.0, 5.0)))
+    table = gd.Measurement("t.csv", np.column_stack([u, v, 0.0 * u]), u=u, v=v)
+    assert require_on_part(plate, table) == ()
+
+
 def test_points_in_another_frame_are_refused(case):
     net, m = case
     with pytest.raises(gd.MeasurementError, match="part's coordinates"):
