@@ -32,6 +32,7 @@ def write_solved(folder: Path, diagnosis: Mapping[str, Any]) -> dict[str, Any]:
     record = {
         "schema": "geomdrap.blind-solved/1",
         "seal": read_seal(folder),
+        "files": hashes(folder),
         "solved_at": _now(),
         "verdict": diagnosis["verdict"],
         "candidates": list(diagnosis.get("candidates", ())),
@@ -46,17 +47,17 @@ def reveal(folder: Path, anyway: bool = False) -> dict[str, Any]:
     """Check the seal, show the truth and grade the verdict; written to revealed.json.
 
     GeomdrapError if the seal is broken or the verdict was given for another one, and, unless ``anyway``, if there is
-    no verdict, or if a file of the set is not the one that was sealed (``changed``): ``grade`` is None then.
+    no verdict, or if a file that was solved is not the one that was sealed (``changed``): ``grade`` is None then.
     """
     truth = unseal(folder)
-    now = hashes(folder)
-    changed = [name for name, before in truth["files"].items() if now.get(name) != before]
+    solved = _read_solved(folder)
+    seen = solved.get("files", {}) if solved else {}
+    changed = [name for name, sealed in truth.get("files", {}).items() if solved and seen.get(name) != sealed]
     if changed and not anyway:
         raise GeomdrapError(
-            f"{folder / changed[0]} is not the file that was sealed, so a verdict on it proves nothing; make the set "
-            "again, or reveal it --anyway"
+            f"{folder / changed[0]} was not the file that was sealed when the set was solved, so the verdict proves "
+            "nothing; put it back and solve the set again, or reveal it --anyway"
         )
-    solved = _read_solved(folder)
     if solved is None and not anyway:
         raise GeomdrapError(f"{folder} is not solved yet; run geomdrap blind solve first, or reveal it --anyway")
     result: dict[str, Any] = {"schema": "geomdrap.blind-reveal/1", "seal": read_seal(folder), "truth": truth}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -106,13 +107,15 @@ class Experiment:
     def _coarseness(self, effects: Sequence[Effect]) -> np.ndarray:
         """What the fine net gives more than the coarse one (m,), at these values or others hardly different."""
         acting = in_order(effects)
-        for before, known in self.coarseness:
-            if [e.name for e in before] == [e.name for e in acting] and _alike(before, acting, HARDLY_DIFFERENT):
-                return known
-        fine, coarse = (self._flat(self.draped(effects, pitch)) for pitch in self.pitches)
-        self.coarseness.append((acting, fine - coarse))
+        apart = [_apart(before, acting) for before, _ in self.coarseness]
+        if min(apart, default=math.inf) <= HARDLY_DIFFERENT:
+            entry = self.coarseness.pop(int(np.argmin(apart)))
+        else:
+            fine, coarse = (self._flat(self.draped(effects, pitch)) for pitch in self.pitches)
+            entry = acting, fine - coarse
+        self.coarseness.append(entry)
         del self.coarseness[:-KEPT]
-        return fine - coarse
+        return entry[1]
 
     def draped(self, effects: Sequence[Effect] = (), pitch: float | None = None) -> Net:
         """The model's net with effects, at the model's own pitch (mm) unless another is given."""
@@ -125,12 +128,13 @@ class Experiment:
     def _relaxed(self, effects: Sequence[Effect], pitch: float) -> Net:
         """A net of what is costly, from the last one with the same effects if that is much like it.
 
-        Over a longer way it might be held back in another balance than the one that a drape finds.
+        Over a longer way it might be held back in another balance than the one that a drape finds; whether many short
+        ways add up to that is not looked into.
         """
         acting = in_order(effects)
         names = f"{pitch!r} {'+'.join(e.name for e in acting)}"
         before, last = self.last.get(names, (acting, None))
-        near = last if _alike(before, acting) else None
+        near = last if _apart(before, acting) <= ALIKE else None
         net = self._draped(effects, pitch, near) if near is not None else self._first(acting, pitch)
         if near is not None and restless(net):
             net = self._first(acting, pitch)
@@ -196,14 +200,14 @@ class Experiment:
 
     def without(self, drop: np.ndarray) -> Experiment:
         """The same experiment without the values ``drop`` (n, c) bool."""
-        kept = ~flatten(drop, self.mask)
-        values = {"noise": self.noise[kept], "measured": self.measured[kept]}
+        left = ~flatten(drop, self.mask)
+        values = {"noise": self.noise[left], "measured": self.measured[left]}
         return replace(self, mask=self.mask & ~drop, coarseness=[], judges={}, **values)
 
     def unsmoothed(self) -> Experiment:
         """The same experiment with nets on the facets themselves, not on the smooth tool that they stand for."""
-        kept: dict[str, dict[str, object]] = {name: {} for name in ("surfaces", "costly", "last", "refused")}
-        return replace(self, on_facets=True, coarseness=[], **kept)  # type: ignore[arg-type]
+        empty: dict[str, dict[str, object]] = {name: {} for name in ("surfaces", "costly", "last", "refused")}
+        return replace(self, on_facets=True, coarseness=[], **empty)  # type: ignore[arg-type]
 
     def white(self, values: np.ndarray) -> np.ndarray:
         """Values (m,) or slopes (m, p) over the noise."""
@@ -233,11 +237,13 @@ def restless(net: Net) -> bool:
     return any(UNREST in warning for warning in net.warnings)
 
 
-def _alike(some: Sequence[Effect], others: Sequence[Effect], share: float = ALIKE) -> bool:
-    """Whether all values of the same effects differ by less than a share of their typical sizes."""
+def _apart(some: Sequence[Effect], others: Sequence[Effect]) -> float:
+    """By how much of their typical sizes values of the same effects differ at most; infinite for other effects."""
+    if [e.name for e in some] != [e.name for e in others]:
+        return math.inf
     sizes = [abs(q.typical - q.neutral) or abs(q.typical) for e in some for q in e.parameters]
     values = [[e.values[q.name] for e in effects for q in e.parameters] for effects in (some, others)]
-    return all(abs(a - b) <= share * size for a, b, size in zip(*values, sizes, strict=True))
+    return max((abs(a - b) / size for a, b, size in zip(*values, sizes, strict=True)), default=0.0)
 
 
 def repr_of(effect: Effect) -> str:

@@ -194,8 +194,9 @@ def add_effect(
     # the more of the misfit is explained, the less a look must promise to be given up
     nearly = explained or least - values < min(NEARLY * (base.fit.chi2 - values), 2.0 * values)
     half = least - values < 0.5 * (base.fit.chi2 - values)
-    too_far = HOPELESS if nearly else NO_RIVAL if half else math.inf
-    if seen is not None and (seen.gain < LEAST_GAIN or _hopeless(whiten, base, seen.after, least, too_far)):
+    too_far = HOPELESS if nearly else NO_RIVAL
+    given_up = seen is not None and (nearly or half) and _hopeless(whiten, base, seen.after, least, too_far)
+    if seen is not None and (given_up or seen.gain < LEAST_GAIN):
         return _not_fitted(model, base, seen)
     start = start_values(experiment, predict, whiten, base, look.effect, seen, turns)
     low, high = model.bounds

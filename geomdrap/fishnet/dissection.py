@@ -28,9 +28,10 @@ class Fronts(NamedTuple):
     """The order of elimination for n nodes and, if any, k yarns: unknowns 2·node and 2·node + 1, then 2n + yarn.
 
     ``unknowns`` [start[f] : start[f + 1]] of front f, of which the first ``own`` [f] are eliminated there; ``home``
-    (2n + k,) the front of each; ``halves`` (fronts, 2) that come before it, -1 for none: the last that have not been
-    halves of another front. ``rows`` and ``left`` are room for what is kept of all fronts and what they pass on, at
-    ``held`` and ``passed`` (fronts,), ``front`` for the largest; ``solve`` works in these, so not twice at a time.
+    (2n + k,) the front of each; ``halves`` (fronts, 2) that come before it, -1 for none, in post-order, so that what
+    they pass on lies on top of a stack. ``rows`` and ``left`` are room for what is kept of all fronts and what they
+    pass on, at ``held`` and ``passed`` (fronts,), ``front`` for the largest; ``solve`` works in these, so not twice
+    at a time.
     """
 
     unknowns: np.ndarray

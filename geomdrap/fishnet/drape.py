@@ -63,7 +63,7 @@ def drape(
     than a pitch from the surface. ``warp_guide`` and ``weft_guide``, points (k, 3) mm of curves on the part, steer
     the generators along them: the origin is then the point of the guide nearest to ``origin``, or where the two
     cross, and the warp runs along its guide whatever the ``angle``. ``near`` is a net of a ply much like this one:
-    one of least energy is sought from where that lies, which takes less time; a coarser one is refined.
+    one of least energy is sought from where its nodes have gone, which takes less time; a coarser one is refined.
     Raises SurfaceError where the part cannot be draped, DrapeError for an impossible seed, heading, pitch or
     blank.
 

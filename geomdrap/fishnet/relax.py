@@ -65,7 +65,10 @@ class Relaxed:
 
 
 def placed(problem: Problem, nodes: np.ndarray) -> Footing:
-    """Where nodes (nu, nv, 3) mm not far from the geometric net stand; seed and heading are where they are held."""
+    """Where nodes (nu, nv, 3) mm stand, looked for from the geometric net; seed and heading are where they are held.
+
+    A node that is led astray on a part that folds back is but a worse start.
+    """
     x, face = nodes[problem.nodes], problem.footing.face.copy()
     seed, guided = problem.number[problem.fixed], problem.number[problem.guided]
     x[seed] = problem.held[0]
@@ -76,16 +79,13 @@ def placed(problem: Problem, nodes: np.ndarray) -> Footing:
     return stand(problem.surface, x, face)
 
 
-def relax(problem: Problem, footing: Footing, close: bool = False) -> Relaxed:
-    """Nodes of least energy, from where they stand: ``problem.footing`` is the geometric net.
-
-    ``close``: they stand near it, so second derivatives are taken in full from the start.
-    """
+def relax(problem: Problem, footing: Footing) -> Relaxed:
+    """Nodes of least energy, from where they stand: ``problem.footing`` is the geometric net."""
     x = problem.on_net(footing.lifted)
     now, damping, stuck = _energy(problem, x, footing), 0.0, 0
     law = problem.law
     fronts = dissect(problem.number, len(footing.face), law.yarn > 0.0, 2 if law.bend > 0.0 else 1)
-    full = close  # far from the end second derivatives need not be positive
+    full = False  # far from the end second derivatives need not be positive
     wary = 0  # the round from which on a step that raises the energy is trusted
     best = mark = Relaxed(x, footing, now, math.inf, 0)
     for n in range(ROUNDS):

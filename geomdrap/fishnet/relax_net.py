@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def relaxed(net: Net, near: Net | None = None) -> Net:
-    """The net of least energy of ``net.fabric``, from the geometric net or from where a net much like it lies.
+    """The net of least energy of ``net.fabric``, from the geometric net or where the nodes of another have gone.
 
     A warning of the net says so where the forces do not come into balance.
     """
@@ -32,7 +32,7 @@ def relaxed(net: Net, near: Net | None = None) -> Net:
         found = relax(problem, problem.footing)
     else:
         start = gone_along(problem.on_net(problem.footing.point, math.nan), net, near)
-        found = relax(problem, placed(problem, start), close=True)
+        found = relax(problem, placed(problem, start))
     moved = found.footing.point - problem.footing.point
     return replace(as_net(net, problem, found), moved=problem.on_net(moved, math.nan))
 
@@ -40,7 +40,7 @@ def relaxed(net: Net, near: Net | None = None) -> Net:
 def gone_along(start: np.ndarray, net: Net, near: Net) -> np.ndarray:
     """Nodes ``start`` (nu, nv, 3) mm of a net, moved as far as those of a net ``near`` have, between its by cubics.
 
-    Nodes that the other net has not go with it as a whole, and from there the way of the nearest that it has.
+    Nodes that the other net has not go with it as a whole, and from there as those nearest to them do.
     """
     from scipy.ndimage import distance_transform_edt
 
@@ -52,8 +52,15 @@ def gone_along(start: np.ndarray, net: Net, near: Net) -> np.ndarray:
         return start
     there = start + moved
     turned = _turned(start, start[known], there[known])
-    rows, columns = distance_transform_edt(~known, return_distances=False, return_indices=True)
-    return np.asarray(turned + (there - turned)[rows, columns])
+    near_to = distance_transform_edt(~known, return_distances=False, return_indices=True)
+    more = (there - turned)[tuple(near_to)]
+    # straight on, where the node on the other side of the nearest one is known: else the rim is strained at once
+    beyond = 2 * near_to - np.indices(known.shape)
+    inside = ((beyond >= 0) & (beyond < np.reshape(known.shape, (2, 1, 1)))).all(axis=0)
+    behind = np.where(inside, beyond, near_to)
+    straight = known[tuple(behind)]
+    more[straight] = 2.0 * more[straight] - (there - turned)[tuple(behind)][straight]
+    return np.asarray(turned + more)
 
 
 def _frame(net: Net) -> np.ndarray:

@@ -67,16 +67,13 @@ def require_on_part(surface: Surface, measurement: Measurement) -> tuple[str, ..
             if distance < FITS * extent:
                 return ()
             raise MeasurementError(
-                f"{measurement.source}: {sizes}, but labels and points of the table agree with one another, so "
-                f"{surface.source} is read in the wrong unit: check --unit"
+                f"{measurement.source}: {sizes}, while its labels and points agree: either all of it is in {unit} "
+                f"(use --unit-measured {unit}), or {surface.source} is read in the wrong unit (check --unit)"
             )
-        hint = (
-            f"{measurement.source}: {sizes}; in {unit} they would lie on the part: use --unit-measured {unit}, if "
-            "--unit is right"
-        )
+        hint = f"{measurement.source}: {sizes}; in {unit} they would lie on the part: use --unit-measured {unit}"
         if distance > OFF * size or extent < TINY * size or _labels_agree(measurement, FACTORS[unit]):
             raise MeasurementError(hint)
-        return (hint,)
+        return (hint + " if so",)
     if distance > OFF * size:
         raise MeasurementError(
             f"{measurement.source}: half of the points lie {distance:.4g} mm or more off {surface.source}, which is "

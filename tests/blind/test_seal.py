@@ -82,16 +82,26 @@ def test_a_verdict_for_another_seal_does_not_count(tmp_path):
 
 
 def test_a_verdict_on_another_table_than_the_sealed_one_does_not_count(tmp_path):
+    table = tmp_path / "measured.csv"
+    table.write_text("x,y,z\n1,2,3\n")
+    seal(tmp_path, TRUTH)
+    table.write_text("x,y,z\n1,2,4\n")
+    write_solved(tmp_path, FOUND)
+    table.write_text("x,y,z\n1,2,3\n")  # putting it back does not help
+    with pytest.raises(GeomdrapError, match=r"measured\.csv was not the file that was sealed"):
+        reveal(tmp_path)
+    write_solved(tmp_path, FOUND)
+    table.write_text("x,y,z\n")  # nor does what comes after harm
+    assert reveal(tmp_path)["grade"] == "right"
+
+
+def test_a_verdict_on_a_changed_table_is_shown_anyway_ungraded(tmp_path):
     (tmp_path / "measured.csv").write_text("x,y,z\n1,2,3\n")
     seal(tmp_path, TRUTH)
+    (tmp_path / "measured.csv").unlink()
     write_solved(tmp_path, FOUND)
-    (tmp_path / "measured.csv").write_text("x,y,z\n1,2,4\n")
-    with pytest.raises(GeomdrapError, match=r"measured\.csv is not the file that was sealed"):
-        reveal(tmp_path)
     shown = reveal(tmp_path, anyway=True)
-    assert (shown["changed"], shown["grade"]) == (["measured.csv"], None)
-    (tmp_path / "measured.csv").write_text("x,y,z\n1,2,3\n")
-    assert reveal(tmp_path)["grade"] == "right"
+    assert (shown["changed"], shown["grade"], shown["right"]) == (["measured.csv"], None, None)
 
 
 def test_a_folder_that_is_no_set_is_refused(tmp_path):

@@ -102,11 +102,13 @@ def test_points_in_another_unit_are_refused_and_the_unit_named(case, unit, facto
 
 
 @pytest.mark.parametrize("factor", [10.0, 25.4, 1000.0])
-def test_a_part_in_another_unit_is_refused_and_not_the_table_blamed(case, factor):
+def test_where_labels_and_points_agree_either_the_part_or_all_of_the_table_is_in_another_unit(case, factor):
     net, m = case
     large = gd.Surface(net.surface.points * factor, net.surface.triangles)
-    with pytest.raises(gd.MeasurementError, match=r"read in the wrong unit: check --unit$"):
-        require_on_part(large, m)
+    small = replace(m, points=m.points / factor, u=m.u / factor, v=m.v / factor)
+    for part, table in ((large, m), (net.surface, small)):
+        with pytest.raises(gd.MeasurementError, match=r"use --unit-measured .*check --unit\)$"):
+            require_on_part(part, table)
 
 
 def test_a_small_patch_of_a_flat_part_is_no_mistake_though_in_cm_it_would_lie_on_it_too():
