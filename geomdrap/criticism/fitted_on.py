@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.criticism.fit import Fit, fit
+from geomdrap.criticism.fit import Fit, Predict, fit
 from geomdrap.criticism.likelihood import is_noise
-from geomdrap.criticism.model import NEARLY, Fitted, Whiten, predictor
+from geomdrap.criticism.model import NEARLY, Fitted, Model, Whiten, predictor
 from geomdrap.criticism.smooth import note_on
 from geomdrap.effects import make
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 REFINEMENTS = 5  # steps on a finer net
 MORE_STEPS = 18  # of a costly fit, if it is the best
 CREEP = 2e-3  # of its chi-square: steps that gain less do not make it another one
+LESS, FEW = 3.0, 3  # times less than was found is tried, in a few steps
 MOSTLY = 0.9  # of the values: a net that predicts fewer is not compared with another
 
 
@@ -53,10 +54,29 @@ def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted)
     """
     model = old.model
     # slopes of the coarser ones, or worn ones, would hide how heading and stiffness make up for each other
-    way = old.values, model.steps, *model.bounds, None, REFINEMENTS
-    found = fit(predictor(finer, model), finer.measured, whiten, *way)
+    way = model.steps, *model.bounds, None, REFINEMENTS
+    predict = predictor(finer, model)
+    found = fit(predict, finer.measured, whiten, old.values, *way)
+    less = _from_less(model, predict, finer.measured, whiten, found)
+    if less.chi2 < found.chi2:
+        found = fit(predict, finer.measured, whiten, less.values, *way)
     ratio, moved = coarser.pitches[1] / finer.pitches[1], np.abs(found.values - old.values)
     return Fitted(model, found, moved / (ratio**2 - 1.0) if ratio > 1.0 and moved.any() else None)
+
+
+def _from_less(model: Model, predict: Predict, measured: np.ndarray, whiten: Whiten, found: Fit) -> Fit:
+    """The ply placed anew with less of what acts at once, where a fit with that leaves more than noise.
+
+    The softer a net, the more it turns: coarse nets leave stiffness too large, along a valley that no slope shows.
+    """
+    kind = make(model.effects[-1])
+    if not kind.acts_at_once or kind.includes or is_noise(found.chi2, len(measured)):
+        return found
+    start, (low, high) = found.values.copy(), model.bounds
+    own = slice(-len(kind.parameters), None)
+    start[own] = np.maximum(start[own] / LESS, low[own])
+    low[own] = high[own] = start[own]
+    return fit(predict, measured, whiten, start, model.steps, low, high, found.slopes, FEW)
 
 
 def again(experiment: Experiment, whiten: Whiten, base: Fitted, known: Sequence[Fitted]) -> list[Fitted]:

@@ -187,6 +187,31 @@ def test_where_the_finer_net_takes_no_step_no_doubt_is_known(monkeypatch):
     assert got.doubt is None
 
 
+class TwoValleys:
+    """An experiment whose misfit has a valley at a ratio of 0.009 that leaves something, and one at 0.003."""
+
+    pitches, measured = (2.0, 2.0), np.zeros(POINTS)
+
+    def __init__(self):
+        self.refused, self.asked = {}, []
+
+    def predict(self, effects):
+        *placement, x = [v for e in effects for v in e.values.values()]
+        self.asked.append(x)
+        off = 1.0 + (x / 0.003 - 3.0) ** 2 if x > 0.006 else 2.0 * (x / 0.003 - 1.0)
+        return SLOPES[:, :3] @ placement + off * SLOPES[:, 3]
+
+
+@pytest.mark.parametrize(("noise", "ratio"), [(0.1, 0.003), (2.0, 0.009)])
+def test_less_stiffness_is_tried_where_what_was_found_leaves_more_than_noise(noise, ratio):
+    """A soft net on a double bump stayed at 0.0074 for 0.0022, since coarse nets had led there."""
+    old = Fitted(Model(("shear-stiffness",)), Fit(np.array([0.0, 0.0, 0.0, 0.0088]), np.zeros(POINTS), SLOPES, 0.0))
+    net = TwoValleys()
+    got = refined(net, net, lambda a: a / noise, old)
+    assert got.values[3] == pytest.approx(ratio, rel=0.05)
+    assert (min(net.asked) < 0.005) == (ratio == 0.003)
+
+
 class Smooth:
     """An experiment whose net is 4 PER_PITCH off on facets, and PER_PITCH where these are rounded."""
 
