@@ -63,9 +63,7 @@ def require_on_part(surface: Surface, measurement: Measurement) -> tuple[str, ..
     unit = _other_unit(surface, points) if distance > OFF * size or extent < SMALL * size else None
     if unit is not None:
         sizes = f"the points span {extent:.4g} mm and the part {size:.4g} mm"
-        if _labels_agree(measurement, 1.0):
-            if distance < FITS * extent:
-                return ()
+        if _labels_agree(measurement, 1.0) and (distance >= FITS * extent or extent < TINY * size):
             raise MeasurementError(
                 f"{measurement.source}: {sizes}, while its labels and points agree: either all of it is in {unit} "
                 f"(use --unit-measured {unit}), or {surface.source} is read in the wrong unit (check --unit)"

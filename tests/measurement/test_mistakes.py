@@ -111,11 +111,19 @@ def test_where_labels_and_points_agree_either_the_part_or_all_of_the_table_is_in
             require_on_part(part, table)
 
 
-def test_a_small_patch_of_a_flat_part_is_no_mistake_though_in_cm_it_would_lie_on_it_too():
+@pytest.mark.parametrize(("factor", "refused"), [(1.0, False), (1.0 / 25.4, True)])
+def test_on_a_flat_part_a_small_table_lies_on_it_in_several_units_which_is_said_and_a_tiny_one_refused(factor, refused):
     plate = gd.Surface([[-100.0, -100, 0], [100, -100, 0], [100, 100, 0], [-100, 100, 0]], [[0, 1, 2], [0, 2, 3]])
-    u, v = (a.ravel() for a in np.meshgrid(np.arange(-10.0, 11.0, 5.0), np.arange(-10.0, 11.0, 5.0)))
+    u, v = (a.ravel() for a in np.meshgrid(*2 * [np.linspace(-11.0, 11.0, 9)]))
+    u, v = factor * u, factor * v
     table = gd.Measurement("t.csv", np.column_stack([u, v, 0.0 * u]), u=u, v=v)
-    assert require_on_part(plate, table) == ()
+    try:
+        said = require_on_part(plate, table)
+        assert not refused
+        assert "--unit-measured cm if so" in said[0]
+    except gd.MeasurementError as error:
+        assert refused
+        assert "check --unit" in str(error)
 
 
 def test_points_in_another_frame_are_refused(case):
