@@ -119,7 +119,7 @@ def _read(folder: Path) -> dict[str, Any]:
 
 @blind.command()
 @click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--anyway", is_flag=True, help="Show the truth of an unsolved or changed set, ungraded.")
+@click.option("--anyway", is_flag=True, help="Show the truth of an unsolved or changed set, which ends it.")
 @json_option
 def reveal(folder: Path, anyway: bool, as_json: bool) -> int:
     """Check the seal of the set in FOLDER and show what was hidden beside what was found.

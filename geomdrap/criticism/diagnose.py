@@ -8,6 +8,7 @@ something is left that needs a cause.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import count
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -122,7 +123,7 @@ def _teller(progress: Progress, passed: int, count: int) -> Callable[[str], None
 
 def _refining(progress: Progress, passed: int) -> Callable[[str], None]:
     """Likewise for what is fitted on after ``passed`` rounds."""
-    told = iter(range(passed + 1, 1000))
+    told = count(passed + 1)
     return lambda name: progress(1.0 - 0.5 ** next(told), f"refining {name}")
 
 
