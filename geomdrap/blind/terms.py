@@ -63,6 +63,28 @@ def roof(slope: float, width: float, heading: float = 0.0) -> Term:
     return term
 
 
+def frustum(slope: float, top: float, foot: float, shoulder: float, fillet: float, longer: float = 1.0) -> Term:
+    """A truncated cone on the plane z = 0: a plateau out to about ``top`` mm, a wall of ``slope`` to ``foot``.
+
+    ``shoulder`` and ``fillet`` (mm) round the two bends as ``width`` does a ramp's; ``shoulder`` also rounds the tip
+    that hyperbolas leave in the middle. It is ``longer`` times as far out along x as if round, and 1/longer along y.
+    """
+
+    def term(x: Array, y: Array) -> tuple[Array, ...]:
+        p, q = x / longer, y * longer
+        r = np.sqrt(p * p + q * q + shoulder**2)
+        rx, ry = p / longer / r, q * longer / r
+        rxx, rxy, ryy = (1.0 / longer**2 - rx * rx) / r, -rx * ry / r, (longer**2 - ry * ry) / r
+        near, far = np.hypot(r - top, shoulder), np.hypot(r - foot, fillet)
+        z = 0.5 * slope * (foot - top + far - near)
+        first = 0.5 * slope * ((r - foot) / far - (r - top) / near)
+        second = 0.5 * slope * (fillet**2 / far**3 - shoulder**2 / near**3)
+        bends = second * rx * rx + first * rxx, second * rx * ry + first * rxy, second * ry * ry + first * ryy
+        return z, first * rx, first * ry, *bends
+
+    return term
+
+
 def cap(radius: float, curved_x: bool = True, curved_y: bool = True) -> Term:
     """A sphere of ``radius`` mm seen from above, or a cylinder where only one direction is curved."""
 

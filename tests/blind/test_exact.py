@@ -12,7 +12,7 @@ from geomdrap.blind.ply import lay
 from geomdrap.blind.recipe import Recipe
 from geomdrap.blind.shear import angle_between, node_shear
 from geomdrap.blind.sheet import bare, parallel
-from geomdrap.blind.terms import added, bowl, bump, cap, ramp, roof
+from geomdrap.blind.terms import added, bowl, bump, cap, frustum, ramp, roof
 from geomdrap.blind.tools import TOOLS, Tool, cylinder, draw_tool, plane, sphere
 from tests.exact_nets import sphere_shear
 
@@ -106,7 +106,14 @@ def test_slopes_and_curvatures_of_tools_are_those_of_their_heights(name):
 
 @pytest.mark.parametrize(
     "term",
-    [bump(9.0, 1.0, 2.0, 20.0, 30.0), bowl(0.01, -0.02), ramp(0.8, 5.0, 4.0, 30.0), roof(0.7, 12.0, 20.0), cap(90.0)],
+    [
+        bump(9.0, 1.0, 2.0, 20.0, 30.0),
+        bowl(0.01, -0.02),
+        ramp(0.8, 5.0, 4.0, 30.0),
+        roof(0.7, 12.0, 20.0),
+        frustum(0.9, 12.0, 30.0, 8.0, 4.0, 1.2),
+        cap(90.0),
+    ],
 )
 def test_slopes_and_curvatures_of_terms_are_those_of_their_heights(term):
     _derivatives_agree(added([term]))
