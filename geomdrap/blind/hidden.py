@@ -15,9 +15,11 @@ import numpy as np
 from geomdrap.blind.tools import CONCAVE, TOOLS
 
 EVERYWHERE = tuple(TOOLS)
-SHEARED = ("dome", "saddle", "double-bump", "ridge", "pan")
-RELAXING = ("dome", "saddle", "double-bump", "ridge")
-MUCH_SHEARED = ("dome", "saddle", "double-bump")
+MUCH_SHEARED = ("dome", "saddle", "double-bump", "bowl", "hat")
+RELAXING = (*MUCH_SHEARED, "ridge")
+SHEARED = (*RELAXING, "pan")
+BENT_ALIKE = tuple(part for part in TOOLS if part != "saddle")
+"""Where a parallel surface is longer or shorter: a saddle bends as much up as down."""
 ASYMMETRIC_RATIO = 0.003  # shear stiffness of the nets whose stiffness depends on the sign of the shear
 LONGEST_BENT = 280.0  # mm
 BENT_RATIO = 0.001  # with less, yarns stay straight by shearing the whole net to a slant
@@ -129,13 +131,13 @@ HIDDEN: dict[str, Hidden] = {
     "weave-skew": Hidden(_skew),
     "steering": Hidden(_steering),
     "slip": Hidden(_slip, MUCH_SHEARED),
-    "thickness": Hidden(_thickness, ("dome", "double-bump", "pan", "ridge", "valley")),
+    "thickness": Hidden(_thickness, BENT_ALIKE),
     "bridging": Hidden(_bridging, CONCAVE),
     "shear-stiffness": Hidden(_stiffness, RELAXING),
     "locking": Hidden(_locking, MUCH_SHEARED),
     "springback": Hidden(_springback, SHEARED),
     "shear-asymmetry": Hidden(_asymmetry, RELAXING),
-    "yarn-bending": Hidden(_bending, ("dome", "saddle")),
+    "yarn-bending": Hidden(_bending, MUCH_SHEARED),
     "crossing-slip": Hidden(_crossing, MUCH_SHEARED),
     "gravity-sag": Hidden(_sag, known=False),
     "drape-order": Hidden(_order, known=False),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geomdrap.blind.terms import Array, Term, added, bowl, bump, cap, ramp, roof
+from geomdrap.blind.terms import Array, Term, added, bowl, bump, cap, frustum, ramp, roof
 from geomdrap.errors import GeomdrapError
 
 
@@ -29,7 +29,6 @@ class Tool:
     def height(self, x: Array, y: Array) -> Array:
         """Give z [mm] at ``x``, ``y`` (any one shape, mm)."""
         return self.term(np.ravel(x), np.ravel(y))[0].reshape(np.shape(x))
-
 
 
 _Draw = Callable[[np.random.Generator, float], Tool]
@@ -83,6 +82,29 @@ def _ridge(rng: np.random.Generator, size: float) -> Tool:
     return Tool("ridge", added([back, crown]), (size * 140.0, size * 150.0))
 
 
+def _bowl(rng: np.random.Generator, size: float) -> Tool:
+    c = rng.uniform(0.0058, 0.0072, 2) / size
+    return Tool("bowl", bowl(c[0], c[1]), (size * 140.0, size * 140.0))
+
+
+def _hat(rng: np.random.Generator, size: float) -> Tool:
+    slope, longer = rng.uniform(0.95, 1.2), rng.uniform(0.95, 1.05)
+    top = size * rng.uniform(38.0, 46.0)
+    foot = top + size * rng.uniform(40.0, 50.0)
+    shoulder, fillet = size * rng.uniform(16.0, 20.0), size * rng.uniform(8.0, 11.0)
+    boss = frustum(slope, top, foot, shoulder, fillet, longer)
+    return Tool("hat", boss, (size * 150.0, size * 150.0), concave=True)
+
+
+def _joggle(rng: np.random.Generator, size: float) -> Tool:
+    slope, heading = rng.uniform(0.95, 1.25), rng.uniform(-15.0, 15.0)
+    foot, top = size * rng.uniform(-45.0, -30.0), size * rng.uniform(20.0, 35.0)
+    fillet, shoulder = size * rng.uniform(8.0, 11.0), size * rng.uniform(14.0, 18.0)
+    sweep = bowl(0.0, -rng.uniform(0.0022, 0.0034) / size)
+    walls = [ramp(slope, foot, fillet, heading), ramp(-slope, top, shoulder, heading)]
+    return Tool("joggle", added([*walls, sweep]), (size * 150.0, size * 130.0), concave=True)
+
+
 TOOLS: dict[str, _Draw] = {
     "dome": _dome,
     "saddle": _saddle,
@@ -90,10 +112,13 @@ TOOLS: dict[str, _Draw] = {
     "valley": _valley,
     "pan": _pan,
     "ridge": _ridge,
+    "bowl": _bowl,
+    "hat": _hat,
+    "joggle": _joggle,
 }
 """The families, each drawn from a random generator and a size factor (1: about 300 mm long)."""
 
-CONCAVE = ("valley", "pan")
+CONCAVE = ("valley", "pan", "hat", "joggle")
 """The families that a stiff ply bridges."""
 
 

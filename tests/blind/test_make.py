@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,9 @@ from geomdrap.blind import HIDDEN, LIBRARY, OUTSIDE, TOOLS, make, unseal
 from geomdrap.blind.files import COLUMNS
 from geomdrap.errors import GeomdrapError
 
-QUICK = [n for n in HIDDEN if n not in ("shear-stiffness", "shear-asymmetry", "locking", "crossing-slip", "yarn-bending")]
+QUICK = [
+    n for n in HIDDEN if n not in ("shear-stiffness", "shear-asymmetry", "locking", "crossing-slip", "yarn-bending")
+]
 
 
 def table(folder):
@@ -137,10 +140,17 @@ def test_two_effects_can_be_hidden_at_once(tmp_path):
         ({"points": 3}, "points"),
         ({"scatter": -1.0}, "scatter"),
         ({"size": 9.0}, "size"),
-        ({"effect": "bridging+locking"}, "bridging and locking"),
+        ({"effect": "shear-stiffness+yarn-bending"}, "yarn-bending does not go together with shear-stiffness"),
     ],
 )
 def test_what_cannot_be_made_is_refused(tmp_path, options, says):
     with pytest.raises(GeomdrapError, match=says):
         make(1, folder=tmp_path / "set", **options)
+    assert not (tmp_path / "set").exists()
+
+
+def test_effects_that_no_part_shows_at_once_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setitem(HIDDEN, "bridging", replace(HIDDEN["bridging"], parts=("valley", "pan")))
+    with pytest.raises(GeomdrapError, match="no blind part shows bridging and locking at once"):
+        make(1, folder=tmp_path / "set", effect="bridging+locking")
     assert not (tmp_path / "set").exists()

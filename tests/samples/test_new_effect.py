@@ -16,7 +16,7 @@ RIVALS = ("thickness", "yarn-extension", "tension-gradient")
 @pytest.fixture(scope="module")
 def warm(tmp_path_factory):
     """The set of the story: its truth, and the keywords of ``diagnose``."""
-    folder = make(6000, effect="heat-growth", folder=tmp_path_factory.mktemp("warm"))
+    folder = make(6000, effect="heat-growth", part="valley", folder=tmp_path_factory.mktemp("warm"))
     setup = gd.read_setup(folder / "setup.toml")
     told = {name: getattr(setup, name) for name in ("origin", "angle", "sigma_xyz", "sigma_shear")}
     surface, measurement = gd.read_surface(folder / "part.stl"), gd.read_measurement(folder / "measured.csv")
