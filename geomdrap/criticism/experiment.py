@@ -13,9 +13,11 @@ import numpy as np
 from geomdrap.criticism.kept import kept
 from geomdrap.criticism.smooth import Split, smoothed
 from geomdrap.fishnet import Effect, Fabric, Net, drape
-from geomdrap.fishnet.effect import fabric_with, in_order, surface_with
+from geomdrap.fishnet.effect import fabric_with, in_order, net_with, surface_with
 from geomdrap.fishnet.held_warp import HeldWarp
+from geomdrap.fishnet.laid_down import laid_down
 from geomdrap.fishnet.relax_net import UNREST
+from geomdrap.fishnet.sway import swayed
 
 if TYPE_CHECKING:
     from geomdrap.criticism.likelihood import Judge
@@ -157,10 +159,22 @@ class Experiment:
         """The length of warp, mm, that holds the heading of relaxed nets: a piece of the coarsest."""
         return self.coarser or self.pitches[1]
 
+    def beside(self, effects: Sequence[Effect], others: Sequence[Effect]) -> np.ndarray | None:
+        """What the model's values (m,) are more with others, to first order in how far these are from the effects.
+
+        None where that takes a drape.
+        """
+        if not any(e.costly for e in others):
+            return None
+        near, lay, (surface, acting) = self.draped(effects, self.pitches[1]), self.layup, self._with_hold(others)
+        if restless(near):
+            return None
+        laid = lay.origin, lay.angle, near.pitch, Fabric(), in_order(acting), lay.reference, lay.project
+        net = swayed(near, laid_down(surface, *laid))
+        return None if net is None else self._flat(net_with(in_order(acting), net)) - self._flat(near)
+
     def _draped(self, effects: Sequence[Effect], pitch: float, near: Net | None = None) -> Net:
-        lay, (surface, others) = self.layup, self._surface_under(effects)
-        if any(e.costly for e in others):
-            others = [*others, HeldWarp(length=self.held)]
+        lay, (surface, others) = self.layup, self._with_hold(effects)
         return drape(
             surface,
             lay.origin,
@@ -171,6 +185,12 @@ class Experiment:
             project=lay.project,
             near=near,
         )
+
+    def _with_hold(self, effects: Sequence[Effect]) -> tuple[Surface, list[Effect]]:
+        """As ``_surface_under``, with what holds the heading of relaxed nets."""
+        surface, others = self._surface_under(effects)
+        hold = [HeldWarp(length=self.held)] if any(e.costly for e in others) else []
+        return surface, [*others, *hold]
 
     def _surface_under(self, effects: Sequence[Effect]) -> tuple[Surface, list[Effect]]:
         """The smooth surface with the effects that act on it, made once for each of their values; other effects."""

@@ -13,7 +13,7 @@ import numpy as np
 from geomdrap.criticism.evidence import MOST, RIVAL_SHARE, Evidence, rivals
 from geomdrap.criticism.experiment import Experiment, restless
 from geomdrap.criticism.fitted_on import doubted_for_facets, refined, refit, with_fresh_slopes
-from geomdrap.criticism.likelihood import Scatter
+from geomdrap.criticism.likelihood import Scatter, is_noise
 from geomdrap.criticism.model import Fitted
 from geomdrap.criticism.search import Round, judge_of
 from geomdrap.effects import make
@@ -76,21 +76,38 @@ def told_apart(
     """The contenders ``alike`` that finer nets leave, the best first, fitted to the end; the round as those see it.
 
     ``last`` is the round of the search that found them. What nets on which costly ones could not be fitted do not
-    tell apart stays as it was. ``done`` is told each name.
+    tell apart stays as it was. What comes to another one at small values is not fitted on where that leaves but
+    noise. ``done`` is told each name.
     """
-    ends = {}
-    for name in alike:
-        done(name)
-        ends[name] = final(experiment, *last.trial(name))
-    costly = [name for name in alike if make(name).costly]
-    if len(alike) < 2 or not costly or any(ends[name][0] is experiment for name in costly):
-        return {name: ends[name] for name in rivals(last.evidence)}, last
+    ends: dict[str, tuple[Experiment, Fitted]] = {}
+    for name in sorted(alike, key=lambda name: not set(alike).isdisjoint(make(name).includes)):
+        if not any(_is_enough(experiment, *ends[less]) for less in make(name).includes if less in ends):
+            done(name)
+            ends[name] = final(experiment, *last.trial(name))
+    last = replace(last, evidence=_no_better(last.evidence, [name for name in alike if name not in ends]))
+    costly = [name for name in ends if make(name).costly]
+    if len(ends) < 2 or not costly or any(ends[name][0] is experiment for name in costly):
+        return {name: ends[name] for name in rivals(last.evidence) if name in ends}, last
     rows = np.all([np.isfinite(model.fit.residual) for _, model in ends.values()], axis=0)
     whiten = judge_of(experiment, rows).whiten(last.trial(alike[0])[1])
     square = {name: float((whiten(model.fit.residual[rows]) ** 2).sum()) for name, (_, model) in ends.items()}
     seen = replace(last, evidence=_as_seen(last.evidence, square))
     margin = RIVAL_SHARE / FINER
     return {name: ends[name] for name in rivals([e for e in seen.evidence if e.name in square], margin)}, seen
+
+
+def _is_enough(experiment: Experiment, finer: Experiment, model: Fitted) -> bool:
+    """Whether a model leaves but noise on nets finer than those of the experiment: more of it would say no more."""
+    return finer is not experiment and is_noise(model.fit.chi2, len(model.fit.residual))
+
+
+def _no_better(evidence: Sequence[Evidence], names: Sequence[str]) -> tuple[Evidence, ...]:
+    """Evidence in which effects are no likelier than what they come to at small values."""
+    of = {e.name: e for e in evidence}
+    return tuple(
+        replace(e, gain=min([e.gain, *(of[less].gain for less in e.includes)])) if e.name in names else e
+        for e in evidence
+    )
 
 
 def _as_seen(evidence: Sequence[Evidence], square: Mapping[str, float]) -> tuple[Evidence, ...]:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 Predict = Callable[[np.ndarray], np.ndarray]
+Beside = Callable[[np.ndarray, np.ndarray], np.ndarray | None]
 
 STEPS = 12  # most accepted or refused steps
 FIRST_STEPS = 3  # after which a fit must have come below a chi-square that is asked of it
@@ -49,6 +50,7 @@ def fit(
     enough: float = math.inf,
     patience: int = 2 * FIRST_STEPS,
     small: float = SMALL,
+    beside: Beside = lambda at, step: None,
 ) -> Fit:
     """Parameters (p,) between ``low`` and ``high`` with the least squares of ``whiten(measured - predict(p))``.
 
@@ -56,7 +58,7 @@ def fit(
     ``steps`` (p,) are the differences with which slopes are taken, where ``slopes`` (m, p) are not given. At
     most ``most`` steps are tried; a fit that is above a chi-square of ``enough`` ``FIRST_STEPS`` after the start, or
     after slopes were taken anew, but at the latest after ``patience`` steps, is given up.
-    A step that promises or gains less than ``small`` of chi-square ends it.
+    A step that promises or gains less than ``small`` of chi-square ends it. ``beside`` as of ``take_slopes``.
     """
     values = np.clip(np.asarray(start, dtype=float), low, high)
     residual = measured - predict(values)
@@ -65,7 +67,7 @@ def fit(
     jacobian = np.zeros((len(residual), len(values))) if slopes is None else slopes.copy()
     free = np.flatnonzero(high > low)  # the others keep the slopes that they have
     if slopes is None:
-        jacobian[:, free] = take_slopes(predict, values, predict(values), steps, low, high, free)[:, free]
+        jacobian[:, free] = take_slopes(predict, values, predict(values), steps, low, high, free, beside)[:, free]
     chi2 = _square(whiten(filled))
     damping = 0.0
     fresh, good = slopes is None, jacobian
@@ -96,7 +98,7 @@ def fit(
             if gain < small:
                 break
         elif not fresh:  # the slopes are worn: take them anew, once for each place
-            jacobian[:, free] = take_slopes(predict, values, predict(values), steps, low, high, free)[:, free]
+            jacobian[:, free] = take_slopes(predict, values, predict(values), steps, low, high, free, beside)[:, free]
             fresh, first, good = True, min(max(first, tried + 1 + FIRST_STEPS), patience), jacobian
         else:
             jacobian = good  # what a refused step has shown, beyond a threshold it may be, is no slope here
@@ -114,10 +116,12 @@ def take_slopes(
     low: np.ndarray,
     high: np.ndarray,
     only: np.ndarray | None = None,
+    beside: Beside = lambda at, step: None,
 ) -> np.ndarray:
     """Slopes (m, p) by differences away from the nearer bound; 0 where one side cannot be predicted.
 
-    ``only`` (k,) are the parameters whose slopes are taken; the others stay 0.
+    ``only`` (k,) are the parameters whose slopes are taken; the others stay 0. ``beside`` says what a step (p,)
+    changes to first order (m,), where that takes less than a prediction; None where it does not.
     """
     out = np.zeros((len(there), len(at)))
     for k in range(len(at)) if only is None else only:
@@ -126,7 +130,8 @@ def take_slopes(
         step[k] = up if up >= min(steps[k], down) else -down
         if step[k] == 0.0:
             continue
-        out[:, k] = np.nan_to_num((predict(at + step) - there) / step[k])
+        change = beside(at, step)
+        out[:, k] = np.nan_to_num((predict(at + step) - there if change is None else change) / step[k])
     return out
 
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.criticism.fit import Fit, Predict, fit
+from geomdrap.criticism.fit import Fit, fit
 from geomdrap.criticism.likelihood import is_noise
-from geomdrap.criticism.model import NEARLY, Fitted, Model, Whiten, predictor
+from geomdrap.criticism.model import NEARLY, Fitted, Model, Predictor, Whiten
 from geomdrap.criticism.smooth import note_on
 from geomdrap.effects import make
 
@@ -34,15 +34,17 @@ def further(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     if idle or is_noise(old.fit.chi2, len(old.fit.residual)):
         return old
     way = old.values, model.steps, *model.bounds, old.fit.slopes, MORE_STEPS
-    found = fit(predictor(experiment, model), experiment.measured, whiten, *way, small=CREEP * old.fit.chi2)
+    predict, small = Predictor(experiment, model), CREEP * old.fit.chi2
+    found = fit(predict, experiment.measured, whiten, *way, small=small, beside=predict.beside)
     return Fitted(model, found) if found.chi2 < old.fit.chi2 else old
 
 
 def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     """A model fitted again, under another noise or without some points, from where it was and with its slopes."""
     model = old.model
-    predict = predictor(experiment, model)
-    fitted = fit(predict, experiment.measured, whiten, old.values, model.steps, *model.bounds, old.fit.slopes)
+    predict = Predictor(experiment, model)
+    way = old.values, model.steps, *model.bounds, old.fit.slopes
+    fitted = fit(predict, experiment.measured, whiten, *way, beside=predict.beside)
     return Fitted(model, fitted)
 
 
@@ -55,16 +57,16 @@ def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted)
     model = old.model
     # slopes of the coarser ones, or worn ones, would hide how heading and stiffness make up for each other
     way = model.steps, *model.bounds, None, REFINEMENTS
-    predict = predictor(finer, model)
-    found = fit(predict, finer.measured, whiten, old.values, *way)
+    predict = Predictor(finer, model)
+    found = fit(predict, finer.measured, whiten, old.values, *way, beside=predict.beside)
     less = _from_less(model, predict, finer.measured, whiten, found)
     if less.chi2 < found.chi2:
-        found = fit(predict, finer.measured, whiten, less.values, *way)
+        found = fit(predict, finer.measured, whiten, less.values, *way, beside=predict.beside)
     ratio, moved = coarser.pitches[1] / finer.pitches[1], np.abs(found.values - old.values)
     return Fitted(model, found, moved / (ratio**2 - 1.0) if ratio > 1.0 and moved.any() else None)
 
 
-def _from_less(model: Model, predict: Predict, measured: np.ndarray, whiten: Whiten, found: Fit) -> Fit:
+def _from_less(model: Model, predict: Predictor, measured: np.ndarray, whiten: Whiten, found: Fit) -> Fit:
     """The ply placed anew with less of what acts at once, where a fit with that leaves more than noise.
 
     The softer a net, the more it turns: coarse nets leave stiffness too large, along a valley that no slope shows.
@@ -76,7 +78,7 @@ def _from_less(model: Model, predict: Predict, measured: np.ndarray, whiten: Whi
     own = slice(-len(kind.parameters), None)
     start[own] = np.maximum(start[own] / LESS, low[own])
     low[own] = high[own] = start[own]
-    return fit(predict, measured, whiten, start, model.steps, low, high, found.slopes, FEW)
+    return fit(predict, measured, whiten, start, model.steps, low, high, found.slopes, FEW, beside=predict.beside)
 
 
 def again(experiment: Experiment, whiten: Whiten, base: Fitted, known: Sequence[Fitted]) -> list[Fitted]:
@@ -102,7 +104,7 @@ def again(experiment: Experiment, whiten: Whiten, base: Fitted, known: Sequence[
 
 def with_fresh_slopes(experiment: Experiment, old: Fitted) -> Fitted:
     """The same model with slopes by central differences where it is now: those of a fit are corrected as it goes."""
-    predict = predictor(experiment, old.model)
+    predict = Predictor(experiment, old.model)
     low, high = old.model.bounds
     slopes = old.fit.slopes.copy()
     for k, step in enumerate(old.model.steps):
@@ -120,7 +122,7 @@ def doubted_for_facets(experiment: Experiment, model: Fitted) -> Fitted:
     Chords are of second order: what is left after every facet was split in four and rounded is a third of what that
     changed. Nothing is known of it where facets are not rounded, or a net on them does not predict what was measured.
     """
-    smooth, rough = (predictor(e, model.model)(model.values) for e in (experiment, experiment.unsmoothed()))
+    smooth, rough = (Predictor(e, model.model)(model.values) for e in (experiment, experiment.unsmoothed()))
     known = np.isfinite(smooth - rough)
     if note_on(experiment.surface) or known.mean() < MOSTLY:
         return model

@@ -22,12 +22,14 @@ if TYPE_CHECKING:
 Whiten = Callable[[np.ndarray], np.ndarray]
 
 STEP = 0.1  # of a parameter's typical size: the differences with which slopes are taken
+NEAR = 0.2  # of these: where slopes are taken to first order
 LEAST = 0.01  # of its typical size: the least value of what acts at once
 FEW_STEPS = 7  # of a fit whose every drape is costly
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
 NEARLY = 0.02  # of the misfit: a model that leaves less, and little beside the noise, has explained nearly all of it
 HOPELESS = 0.5  # of the way from the best model back to the base
-NO_RIVAL = 0.85  # the same, where the best model explains half of the misfit
+HALF, MOSTLY = 0.5, 0.1  # of the misfit: what the best model leaves of it
+NO_RIVAL = 0.85, 0.35  # the same, of a look in these: true effects left up to a fifth, with a threshold a half
 FAR = 0.1  # the same, where the best model leaves next to nothing and a few values were probed
 
 
@@ -90,7 +92,7 @@ class Look:
 
     effect: str
     model: Model
-    predict: Callable[[np.ndarray], np.ndarray]
+    predict: Predictor
     seen: Glance | None = None
 
 
@@ -124,27 +126,38 @@ class Fitted:
         return [(p, k) for k, (name, p) in enumerate(self.model.parameters) if name == effect]
 
 
-def predictor(experiment: Experiment, model: Model) -> Callable[[np.ndarray], np.ndarray]:
-    """The prediction (m,) as a function of the model's values (p,); NaN where the drape is impossible."""
-    kept: dict[bytes, np.ndarray] = {}
+class Predictor:
+    """The prediction (m,) as a function of a model's values (p,), remembered; NaN where the drape is impossible."""
 
-    def predict(values: np.ndarray) -> np.ndarray:
+    def __init__(self, experiment: Experiment, model: Model) -> None:
+        self.experiment, self.model = experiment, model
+        self.kept: dict[bytes, np.ndarray] = {}
+
+    def __call__(self, values: np.ndarray) -> np.ndarray:
+        """The prediction at values (p,)."""
         key = values.tobytes()
-        if key not in kept:
+        if key not in self.kept:
             try:
-                kept[key] = experiment.predict(model.built(values))
-            except GeomdrapError as error:  # as for a seed moved off the part: nothing is predicted, and that is said
-                experiment.refused[model.names[-1]] = str(error)
-                kept[key] = np.full(len(experiment.measured), np.nan)
-        return kept[key]
+                self.kept[key] = self.experiment.predict(self.model.built(values))
+            except GeomdrapError as error:  # as for a seed moved off the part: nothing is predicted, and it is said
+                self.experiment.refused[self.model.names[-1]] = str(error)
+                self.kept[key] = np.full(len(self.experiment.measured), np.nan)
+        return self.kept[key]
 
-    return predict
+    def beside(self, values: np.ndarray, step: np.ndarray) -> np.ndarray | None:
+        """What a step (p,) from values (p,) changes to first order, None where that takes predictions."""
+        near, there = (self.model.built(v) for v in (values, values + NEAR * step))
+        try:
+            change = self.experiment.beside(near, there)
+        except GeomdrapError:  # the prediction says why
+            return None
+        return None if change is None else change / NEAR
 
 
 def unfitted(experiment: Experiment) -> Fitted:
     """The net as it was meant: nothing fitted."""
     model = Model(())
-    residual = experiment.measured - predictor(experiment, model)(model.neutral)
+    residual = experiment.measured - Predictor(experiment, model)(model.neutral)
     nothing = np.zeros((len(residual), 0))
     return Fitted(model, Fit(model.neutral, residual, nothing, float(np.nansum((residual / experiment.noise) ** 2))))
 
@@ -152,7 +165,7 @@ def unfitted(experiment: Experiment) -> Fitted:
 def fit_placement(experiment: Experiment, whiten: Whiten) -> Fitted:
     """The model without effects."""
     model = Model(())
-    predict = predictor(experiment, model)
+    predict = Predictor(experiment, model)
     return Fitted(model, fit(predict, experiment.measured, whiten, model.neutral, model.steps, *model.bounds))
 
 
@@ -162,7 +175,7 @@ def look_at(experiment: Experiment, whiten: Whiten, likely: Whiten, base: Fitted
     ``whiten`` divides by the noise; ``likely`` whitens with the likeliest scatter of the base.
     """
     model = base.model.with_effect(effect)
-    predict = predictor(experiment, model)
+    predict = Predictor(experiment, model)
     return Look(
         effect, model, predict, glance(experiment, predict, whiten, likely, base, effect) if slow(effect) else None
     )
@@ -191,18 +204,19 @@ def add_effect(
     model, predict, kind, seen = look.model, look.predict, make(look.effect), look.seen
     values = len(experiment.measured)
     explained = seen is not None and is_noise(least, values)
-    # the more of the misfit is explained, the less a look must promise to be given up
     nearly = explained or least - values < min(NEARLY * (base.fit.chi2 - values), 2.0 * values)
-    half = least - values < 0.5 * (base.fit.chi2 - values)
-    too_far = HOPELESS if nearly else NO_RIVAL
-    given_up = seen is not None and (nearly or half) and _hopeless(whiten, base, seen.after, least, too_far)
+    left = (least - values) / max(base.fit.chi2 - values, 1e-300)
+    too_far = NO_RIVAL[nearly or left < MOSTLY]
+    given_up = seen is not None and (nearly or left < HALF) and _hopeless(whiten, base, seen.after, least, too_far)
     if seen is not None and (given_up or seen.gain < LEAST_GAIN):
         return _not_fitted(model, base, seen)
     start = start_values(experiment, predict, whiten, base, look.effect, seen, turns)
     low, high = model.bounds
     # what the base already has keeps its slopes; the fit mends them where they mislead it
     own = slice(len(base.values), None)
-    slopes = take_slopes(predict, start, predict(start), model.steps, low, high, np.arange(len(start))[own])
+    slopes = take_slopes(
+        predict, start, predict(start), model.steps, low, high, np.arange(len(start))[own], predict.beside
+    )
     slopes[:, : len(base.values)] = base.fit.slopes
     residual = experiment.measured - predict(start)
     residual = np.where(np.isnan(residual), base.fit.residual, residual)
@@ -218,7 +232,8 @@ def add_effect(
     # slopes may mislead a first step or two; what is still far off then stays so
     enough = least + far * (base.fit.chi2 - least) if seen is not None else math.inf
     patience = 2 * FIRST_STEPS if kind.costly else FIRST_STEPS
-    found = fit(predict, experiment.measured, whiten, start, model.steps, low, high, slopes, most, enough, patience)
+    way = start, model.steps, low, high, slopes, most, enough, patience
+    found = fit(predict, experiment.measured, whiten, *way, beside=predict.beside)
     return Fitted(model, found)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.fields.result import Checks
-from geomdrap.fishnet.drape import SPREAD
+from geomdrap.fishnet.laid_down import SPREAD
 from geomdrap.geodesic.compiled import kernel
 from geomdrap.geodesic.mesh import BEND, mesh_of
 

@@ -8,24 +8,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.errors import DrapeError, SurfaceError
+from geomdrap.errors import DrapeError
 from geomdrap.fishnet import seed as seeds
-from geomdrap.fishnet.centroid import said
-from geomdrap.fishnet.effect import Effect, fabric_with, in_order, net_with, shift_with, surface_with
+from geomdrap.fishnet.effect import Effect, in_order, net_with
 from geomdrap.fishnet.extent import Extent, first_extent, grow, sides
 from geomdrap.fishnet.fabric import Fabric
 from geomdrap.fishnet.front import branch_off, carry_front_on
 from geomdrap.fishnet.grid import PIECES, STRAIN, Grid, Status, empty_grid
+from geomdrap.fishnet.laid_down import Start, laid_down
 from geomdrap.fishnet.march import fill_quadrants, lay_generators
 from geomdrap.fishnet.net import Net, cells_of
-from geomdrap.fishnet.pitch import check_pitch, choose_pitch, coarse_facets
+from geomdrap.fishnet.pitch import coarse_facets
 from geomdrap.fishnet.place import APART, all_in_space, place_seed
 from geomdrap.fishnet.relax_net import relaxed
 from geomdrap.fishnet.shear import shears, yarn_directions
-from geomdrap.fishnet.shift import Shift, displaced
 from geomdrap.fishnet.slide import fill_quadrants_sliding, strain_on_axis
 from geomdrap.fishnet.steer import Guides, generator_turns
-from geomdrap.geodesic.mesh import Mesh, mesh_of
+from geomdrap.geodesic.mesh import Mesh
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,10 +32,7 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 
-FAR = 1e5  # part's diagonals from the origin: beyond, rounding reaches what ``TIE`` tells apart
-MOST_HEADING = 1e6  # degrees: more is a slip of the pen, and leaves few digits of the direction
 AXIS_ROUNDS, AXIS_STRAIN = 10, 1e-8  # marches until a sliding weft generator has its length: one, without skew
-SPREAD = 2.0  # cells: the facets' curvature is spread no further, which is below what the net resolves
 
 
 def drape(
@@ -70,60 +66,22 @@ def drape(
     Source: H. Borouchaki and A. Cherouat, GeomDrap (modified MOSAIC).
     """
     acting = in_order(effects)
-    fabric = fabric_with(acting, fabric or Fabric())
-    if not abs(angle) <= MOST_HEADING:
-        raise DrapeError(f"the heading must be a number of degrees up to {MOST_HEADING:,.0f}, not {angle:g}")
-    tool, (face, point, distance) = surface, seeds.locate(surface, origin)
-    meant, surface = point, surface_with(acting, tool)
-    if surface is not tool:
-        face, point, _ = seeds.locate(surface, point)
-    part = surface.only_component(face)
-    part.require_drapable()
-    _require_digits(part)
-    pitch, notes = (check_pitch(part, pitch), ()) if pitch is not None else choose_pitch(part)
-    _check_distance(tool, origin, distance, pitch, project)
-    mesh = mesh_of(part.lidded, SPREAD * pitch)
-    point, moved = seeds.out_of_corner(part, origin, point, mesh, pitch)
-    where = said(tool, meant, pitch) if isinstance(origin, str) and origin == "centroid" else ()
-    notes = (*notes, *where, *moved, *_cuts(tool))
-    guides = Guides.laid(part, warp_guide, weft_guide, pitch, project)
-    shift = shift_with(acting, Shift())
-    if guides:
-        guides.require_alone(fabric, shift)
-        start, angle, fabric = guides.plant(part, point, mesh, reference, fabric, pitch)
-        notes = (*notes, guides.note)
-    else:
-        start = _plant(part, point, math.fmod(angle, 360.0), mesh, reference, fabric, shift)
-    extent = first_extent(part, start, pitch, reach)
+    start = laid_down(
+        surface, origin, angle, pitch, fabric or Fabric(), acting, reference, project, (warp_guide, weft_guide)
+    )
+    part, mesh, seed, pitch, fabric = start.part, start.mesh, start.seed, start.pitch, start.fabric
+    extent = first_extent(part, seed, pitch, reach)
     while True:
-        grid = _march_sliding(mesh, start, extent, pitch, fabric, guides)
+        grid = _march_sliding(mesh, seed, extent, pitch, fabric, start.guides)
         larger = grow(extent, grid, pitch)
         if larger == extent:
             break
         extent = larger
     _require_cells(grid, part, pitch)
-    net = _as_net(surface, part, start, angle, pitch, reach, fabric, extent, mesh, grid, notes)
+    net = _as_net(start, reach, extent, grid)
     if fabric.relaxes:
         net = relaxed(net, near)
-    return replace(net_with(acting, net), effects=acting, guided=guides is not None)
-
-
-def _plant(
-    part: Surface,
-    point: np.ndarray,
-    heading: float,
-    mesh: Mesh,
-    reference: Sequence[float] | None,
-    fabric: Fabric,
-    shift: Shift,
-) -> seeds.Seed:
-    """The seed at a point with the warp at a heading (degrees), or where it was really laid down."""
-
-    def plant(turn: float) -> seeds.Seed:
-        return seeds.plant(part, point, heading + turn, mesh, reference, fabric.weft_angle)
-
-    meant = plant(0.0)
-    return meant if shift == Shift() else displaced(shift, meant, plant, mesh, len(part.triangles))
+    return replace(net_with(acting, net), effects=acting, guided=start.guides is not None)
 
 
 def _march_sliding(
@@ -175,12 +133,6 @@ def _require_cells(grid: Grid, surface: Surface, pitch: float) -> None:
         )
 
 
-def _cuts(surface: Surface) -> tuple[str, ...]:
-    """A note on the lines that the part is cut along."""
-    names = ", ".join(dict.fromkeys(surface.cuts))
-    return (f"the part is cut along {names}: {surface.cut_length:.4g} mm",) if names else ()
-
-
 def _cut_off(surface: Surface, part: Surface) -> tuple[str, ...]:
     """A warning where the cuts part the surface, so that a piece of it is left out."""
     if not surface.cuts or part is surface:
@@ -196,33 +148,12 @@ def unit_hint(surface: Surface) -> tuple[str, ...]:
     return (surface.findings.unit_hint,) if surface.findings.unit_hint else ()
 
 
-def _require_digits(surface: Surface) -> None:
-    """Raise SurfaceError for a part so far from the origin that its coordinates have too few digits left."""
-    away = float(np.abs(surface.bounds).max())
-    if away > FAR * surface.diagonal:
-        raise SurfaceError(
-            f"{surface.source} lies {away:.3g} mm from the origin, too far for a size of {surface.diagonal:.6g} mm: "
-            "its coordinates have too few digits; move it closer to the origin"
-        )
-
-
 def _seed_in_frame(mesh: Mesh, start: seeds.Seed) -> tuple[float, float, float, float]:
     """Point and unit warp direction of the seed in the frame of its face."""
     origin, e1, e2 = mesh.frames[start.face].reshape(3, 3)
     away = start.point - origin
     heading_rad = math.atan2(float(start.warp @ e2), float(start.warp @ e1))
     return float(away @ e1), float(away @ e2), math.cos(heading_rad), math.sin(heading_rad)
-
-
-def _check_distance(surface: Surface, origin: seeds.Origin, distance: float, pitch: float, project: bool) -> None:
-    """The centroid is projected by definition; a point further off than a pitch is more likely a mistake."""
-    if isinstance(origin, str) and origin == "centroid":
-        return
-    if distance > pitch and not project:
-        raise DrapeError(
-            f"the origin lies {distance:.6g} mm from {surface.source}, more than the pitch of {pitch:.6g} mm; "
-            "move it, or allow the nearest point with --project (project=True)"
-        )
 
 
 def _sides_as_they_lie(grid: Grid, fabric: Fabric) -> tuple[np.ndarray, np.ndarray] | None:
@@ -234,24 +165,13 @@ def _sides_as_they_lie(grid: Grid, fabric: Fabric) -> tuple[np.ndarray, np.ndarr
     return warp, grid.sides_v[None, j0:j1] * (1.0 + grid.node[i0 : i1 + 1, j0:j1, STRAIN])
 
 
-def _as_net(
-    surface: Surface,
-    part: Surface,
-    start: seeds.Seed,
-    angle: float,
-    pitch: float,
-    reach: tuple[float, float] | None,
-    fabric: Fabric,
-    extent: Extent,
-    mesh: Mesh,
-    grid: Grid,
-    notes: tuple[str, ...],
-) -> Net:
+def _as_net(start: Start, reach: tuple[float, float] | None, extent: Extent, grid: Grid) -> Net:
     """Cut the grid to the nodes that are there and turn it into a Net."""
+    surface, part, seed, pitch, fabric = start.surface, start.part, start.seed, start.pitch, start.fabric
     i0, i1, j0, j1 = (int(k) for k in grid.box[:4])
     near = np.s_[i0 : i1 + 1, j0 : j1 + 1]
     face = grid.face[near] - 1
-    lattice = all_in_space(mesh, grid, i0, i1 + 1, j0, j1 + 1)
+    lattice = all_in_space(start.mesh, grid, i0, i1 + 1, j0, j1 + 1)
     pieces = grid.marks[near][..., PIECES]
     warp, weft = (pieces & 1) != 0, (pieces & 2) != 0
     lattice_valid = warp[:-1, :-1] & warp[:-1, 1:] & weft[:-1, :-1] & weft[1:, :-1]
@@ -263,6 +183,7 @@ def _as_net(
         points = np.where(over_hole[..., None], np.nan, lattice)
         face = np.where(over_hole, -1, face)
         valid = lattice_valid & np.isfinite(cells_of(points[..., 0])).all(axis=0)
+    notes = start.notes
     cell_shear, shear = shears(grid, i0, j0, valid)
     if part is not surface:  # of its pieces one is draped
         others = surface.n_components - 1
@@ -270,13 +191,13 @@ def _as_net(
     return Net(
         surface=part,
         fabric=fabric,
-        origin=start.point,
-        origin_face=start.face,
-        warp0=start.warp,
-        weft0=start.weft,
-        normal0=start.normal,
-        angle=float(angle),
-        pitch=float(pitch),
+        origin=seed.point,
+        origin_face=seed.face,
+        warp0=seed.warp,
+        weft0=seed.weft,
+        normal0=seed.normal,
+        angle=start.angle,
+        pitch=pitch,
         reach=reach,
         u=(np.arange(i0, i1 + 1) - extent.west) * pitch,
         v=(np.arange(j0, j1 + 1) - extent.south) * pitch,
@@ -286,7 +207,7 @@ def _as_net(
         cell_valid=valid,
         lattice=lattice,
         lattice_valid=lattice_valid,
-        yarns=yarn_directions(mesh, grid, i0, i1 + 1, j0, j1 + 1),
+        yarns=yarn_directions(start.mesh, grid, i0, i1 + 1, j0, j1 + 1),
         cell_shear=cell_shear,
         shear=shear,
         sides=_sides_as_they_lie(grid, fabric),

@@ -11,6 +11,7 @@ from geomdrap.fishnet.fabric import Fabric
 
 if TYPE_CHECKING:
     from geomdrap.fishnet.effect import Effect
+    from geomdrap.fishnet.relax_net import Balance
     from geomdrap.surface import Surface
 
 
@@ -34,7 +35,8 @@ class Net:
     lengths of the blank, mm. ``sides`` are the lengths of the warp pieces (nu - 1, nv) and weft pieces (nu, nv - 1)
     as they lie, mm; None where all have the length that they have in the flat fabric. ``effects`` are those that
     acted, in their order. ``guided`` says that generators follow curves of the user's. ``moved`` (nu, nv, 3) mm: how
-    far nodes have gone to where the energy is least, those beyond the rim too; None for a net that is not relaxed.
+    far nodes have gone to where the energy is least, those beyond the rim too, and ``balance`` what that came from;
+    None for a net that is not relaxed.
     ``notes`` say what was chosen, ``warnings`` what the user should look at.
     """
 
@@ -63,6 +65,7 @@ class Net:
     effects: tuple[Effect, ...] = field(default=())
     guided: bool = field(default=False)
     moved: np.ndarray | None = field(default=None)
+    balance: Balance | None = field(default=None, repr=False)
     notes: tuple[str, ...] = field(default=())
     warnings: tuple[str, ...] = field(default=())
 

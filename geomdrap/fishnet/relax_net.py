@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,14 @@ if TYPE_CHECKING:
     from geomdrap.fishnet.relax_problem import Problem
 
 
+class Balance(NamedTuple):
+    """What a net of least energy came from: the geometric net as it was ``laid``, the problem, what was found."""
+
+    laid: Net
+    problem: Problem
+    found: Relaxed
+
+
 def relaxed(net: Net, near: Net | None = None) -> Net:
     """The net of least energy of ``net.fabric``, from the geometric net or where the nodes of another have gone.
 
@@ -34,7 +42,8 @@ def relaxed(net: Net, near: Net | None = None) -> Net:
         start = gone_along(problem.on_net(problem.footing.point, math.nan), net, near)
         found = relax(problem, placed(problem, start))
     moved = found.footing.point - problem.footing.point
-    return replace(as_net(net, problem, found), moved=problem.on_net(moved, math.nan))
+    balance = Balance(net, problem, found)
+    return replace(as_net(net, problem, found), moved=problem.on_net(moved, math.nan), balance=balance)
 
 
 def gone_along(start: np.ndarray, net: Net, near: Net) -> np.ndarray:

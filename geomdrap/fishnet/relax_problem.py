@@ -81,10 +81,15 @@ def law_of(fabric: Fabric) -> Law:
 def problem_of(net: Net) -> Problem:
     """The problem of relaxing a net of its fabric. Raises DrapeError where the seed has no cell beside it."""
     problem = pose(net, law_of(net.fabric))
-    if net.fabric.shear_stiffness or net.fabric.shear_asymmetry or net.fabric.bending_length:
+    if needs_no_hold(net.fabric):
         return problem
     # without a stiffness in shear many nets are minimal, and yarns under pressure buckle from node to node
     return replace(problem, target=chord_sines(problem.x0, problem.valid))
+
+
+def needs_no_hold(fabric: Fabric) -> bool:
+    """Whether a fabric resists shear of any size, so that one net alone is minimal."""
+    return bool(fabric.shear_stiffness or fabric.shear_asymmetry or fabric.bending_length)
 
 
 def pose(net: Net, law: Law) -> Problem:

@@ -134,6 +134,31 @@ def test_rivals_on_a_coarse_net_are_told_apart_by_finer_ones(monkeypatch, behind
     assert gains[names[1]] - gains[names[0]] == pytest.approx(-1.0 if coarse else behind)
 
 
+@pytest.mark.parametrize("left", [12.0, 60.0])
+def test_more_of_what_leaves_but_noise_on_finer_nets_is_not_fitted_on(monkeypatch, left):
+    """Yarn-bending of a small length is shear stiffness: it took longest, and could only say the same."""
+    names = ("yarn-bending", "shear-stiffness")
+    includes = {"yarn-bending": ("shear-stiffness",)}
+    evidence = tuple(
+        Evidence(n, g, 1, 0.0, 0.0, 0.9, 0.5, True, includes.get(n, ()))
+        for n, g in zip(names, (901.0, 900.0), strict=True)
+    )
+    trials = tuple(fitted(n) for n in names)
+    of = Round(fitted(), trials, evidence, (NO_SCATTER,) * 3, np.ones(POINTS, bool), None, 1.0, ())
+    told = []
+
+    def final(experiment, model, scatter):
+        return experiment.finer(), replace(model, fit=replace(model.fit, chi2=left))
+
+    monkeypatch.setattr(last, "final", final)
+    ends, seen = last.told_apart(experiment((1.0, 8.0)), of, names, told.append)
+    assert told == ["shear-stiffness", "yarn-bending"][: 1 if left == 12.0 else 2]
+    if left == 12.0:
+        assert list(ends) == ["shear-stiffness"]
+        gains = {e.name: e.gain for e in seen.evidence}
+        assert gains["yarn-bending"] == gains["shear-stiffness"] == 900.0  # else it would weigh in the confidence
+
+
 @pytest.mark.parametrize(("behind", "share", "asked"), [(60.0, 0.99, True), (5.0, 0.99, True), (60.0, 0.8, False)])
 def test_what_the_best_comes_to_at_small_values_is_asked_of_finer_nets_too(behind, share, asked):
     """On a coarse net a little bending makes up for the pitch: shear stiffness was called yarn-bending."""
@@ -148,7 +173,14 @@ SLOPES = np.random.default_rng(1).normal(size=(POINTS, 4))  # of the placement a
 TRUTH, PER_PITCH = np.array([0.3, -0.2, 0.5, 2.0]), np.array([0.01, 0.02, -0.01, 0.03])
 
 
-class OfSecondOrder:
+class WithoutNets:
+    """An experiment that knows nothing but its predictions."""
+
+    def beside(self, effects, others):
+        return None
+
+
+class OfSecondOrder(WithoutNets):
     """An experiment whose net is off by PER_PITCH·pitch² in every value."""
 
     def __init__(self, pitch):
@@ -187,7 +219,7 @@ def test_where_the_finer_net_takes_no_step_no_doubt_is_known(monkeypatch):
     assert got.doubt is None
 
 
-class TwoValleys:
+class TwoValleys(WithoutNets):
     """An experiment whose misfit has a valley at a ratio of 0.009 that leaves something, and one at 0.003."""
 
     pitches, measured = (2.0, 2.0), np.zeros(POINTS)
@@ -212,7 +244,7 @@ def test_less_stiffness_is_tried_where_what_was_found_leaves_more_than_noise(noi
     assert (min(net.asked) < 0.005) == (ratio == 0.003)
 
 
-class Smooth:
+class Smooth(WithoutNets):
     """An experiment whose net is 4 PER_PITCH off on facets, and PER_PITCH where these are rounded."""
 
     surface, noise = shapes.plane(10.0, 10.0, 5.0), np.full(POINTS, 0.1)

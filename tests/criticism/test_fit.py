@@ -162,3 +162,18 @@ def test_what_a_step_over_a_threshold_shows_is_no_slope():
     got = fit(predict, y, same, np.array([0.0, 0.01]), STEPS, *WIDE)
     assert got.values[1] >= 0.0
     np.testing.assert_allclose(got.slopes, a, atol=0.05)
+
+
+def test_what_a_small_step_changes_is_asked_before_a_prediction():
+    asked = []
+
+    def beside(at, step):
+        asked.append(step.copy())
+        return np.full(40, 7.0) * step[0] if step[0] else None
+
+    at = np.array([0.5, 0.25])
+    got = take_slopes(curve, at, curve(at), STEPS, np.zeros(2), np.ones(2), beside=beside)
+    plain = take_slopes(curve, at, curve(at), STEPS, np.zeros(2), np.ones(2))
+    assert len(asked) == 2
+    np.testing.assert_allclose(got[:, 0], 7.0)
+    np.testing.assert_array_equal(got[:, 1], plain[:, 1])

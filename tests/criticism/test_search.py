@@ -77,7 +77,16 @@ def test_the_slow_effect_that_a_look_favours_is_tried_first(monkeypatch):
 
 @pytest.mark.parametrize(
     ("best", "left", "tried"),
-    [(0.4, 0.8, True), (0.4, 0.95, False), (0.6, 0.95, True), (0.0004, 0.6, False), (1.0 + 1e-9, 0.5, True)],
+    [
+        (0.4, 0.8, True),
+        (0.4, 0.95, False),
+        (0.6, 0.95, True),
+        (0.05, 0.3, True),
+        (0.05, 0.4, False),
+        (0.0004, 0.3, True),
+        (0.0004, 0.4, False),
+        (1.0 + 1e-9, 0.5, True),
+    ],
 )
 def test_the_more_another_effect_explains_the_more_a_look_must_promise(best, left, tried):
     """``best`` is what the best effect so far leaves of the misfit, ``left`` the look's share of the way to it."""
@@ -93,6 +102,7 @@ def test_the_more_another_effect_explains_the_more_a_look_must_promise(best, lef
         asked.append(v)
         return PLACES @ v[:3] + v[3] * AT[:, 1]
 
+    predict.beside = lambda at, step: None
     seen = Glance(np.array([0.003]), AT[:, 1], 100.0, least + left * (before - least))
     look = Look("shear-asymmetry", Model(("shear-asymmetry",)), predict, seen)
     experiment = SimpleNamespace(measured=measured, top_shear=30.0)

@@ -1,0 +1,75 @@
+"""Nets beside one at rest, to first order: as those that come to rest themselves, and none where that cannot be.
+
+Steps are so small that no cell at the rim comes or goes, which moves the nodes beside it by tenths of a millimetre.
+"""
+
+import numpy as np
+import pytest
+
+import geomdrap as gd
+from geomdrap.fishnet import Fabric
+from geomdrap.fishnet.effect import in_order, surface_with
+from geomdrap.fishnet.held_warp import HeldWarp
+from geomdrap.fishnet.laid_down import laid_down
+from geomdrap.fishnet.sway import swayed
+from geomdrap.surface import shapes
+
+SEED, ANGLE, PITCH = (4.0, -3.0, 50.0), 20.0, 8.0
+HOLD = HeldWarp(length=16.0)
+
+
+@pytest.fixture(scope="module")
+def dome():
+    plane = shapes.plane(240.0, 240.0, 2.0)
+    x, y = plane.points[:, 0], plane.points[:, 1]
+    return gd.Surface(np.column_stack([x, y, 50.0 * np.exp(-(x**2 + y**2) / 6000.0)]), plane.triangles)
+
+
+def effects(of, shift=(0.0, 0.0, 0.0), **more):
+    du, dv, dangle = shift
+    made = [gd.effects.make(name, **values) for name, values in {**of, **more}.items()]
+    return [gd.effects.make("placement", du=du, dv=dv, dangle=dangle), *made, HOLD]
+
+
+def at_rest(part, acting, near=None):
+    return gd.drape(part, SEED, ANGLE, PITCH, effects=acting, project=True, near=near)
+
+
+def to_first_order(part, near, acting):
+    acting = in_order(acting)
+    return swayed(near, laid_down(surface_with(acting, part), SEED, ANGLE, PITCH, Fabric(), acting, None, True))
+
+
+SOFT = {"shear-stiffness": {"ratio": 0.02}}
+CASES = [
+    (SOFT, (0.0, 0.0, 0.0), {"shear-stiffness": {"ratio": 0.0202}}),
+    (SOFT, (0.01, 0.0, 0.0), SOFT),
+    (SOFT, (0.0, 0.0, 0.02), SOFT),
+    ({"yarn-bending": {"length": 40.0}}, (0.0, 0.0, 0.0), {"yarn-bending": {"length": 40.4}}),
+    ({"shear-asymmetry": {"alpha": 0.2}}, (0.0, 0.0, 0.0), {"shear-asymmetry": {"alpha": 0.202}}),
+]
+
+
+@pytest.mark.parametrize(("of", "shift", "then"), CASES)
+def test_it_is_as_the_net_that_comes_to_rest_itself(dome, of, shift, then):
+    near = at_rest(dome, effects(of))
+    full, quick = at_rest(dome, effects(then, shift), near), to_first_order(dome, near, effects(then, shift))
+    assert not near.warnings + full.warnings
+    _, i, k = np.intersect1d(full.u, near.u, return_indices=True)
+    _, j, m = np.intersect1d(full.v, near.v, return_indices=True)
+    moved, error = (
+        net.points[np.ix_(i, j)] - of_which.points[np.ix_(k, m)] for net, of_which in ((full, near), (full, quick))
+    )
+    assert np.isfinite(error).sum() > 0.95 * np.isfinite(full.points).sum()
+    assert np.sqrt(np.nanmean(error**2)) < 0.03 * np.sqrt(np.nanmean(moved**2))
+    shear = full.shear[np.ix_(i, j)] - near.shear[np.ix_(k, m)]
+    left = full.shear[np.ix_(i, j)] - quick.shear[np.ix_(k, m)]
+    assert np.sqrt(np.nanmean(left**2)) < 0.1 * np.sqrt(np.nanmean(shear**2)) + 0.002
+
+
+def test_it_is_none_where_more_than_placement_and_stiffness_differ(dome):
+    near = at_rest(dome, effects(SOFT))
+    assert to_first_order(dome, near, effects(SOFT, **{"yarn-extension": {"strain_warp": 0.01}})) is None
+    assert to_first_order(dome, near, effects(SOFT, thickness={"offset": 1.0})) is None
+    assert to_first_order(dome, near, effects({"locking": {"angle": 10.0}})) is None
+    assert to_first_order(dome, at_rest(dome, effects({})), effects(SOFT)) is None
