@@ -33,11 +33,12 @@ def improvement_summary(improvement: Improvement, files: Mapping[str, Path]) -> 
 
 
 def _words(diagnosis: Diagnosis, more: Sequence[str] = ()) -> Iterator[str]:
-    from geomdrap.criticism.story import error_sentence, rival_sentence, unseen_sentences, verdict_sentence
+    from geomdrap.criticism import story
 
-    yield from wrapped(verdict_sentence(diagnosis))
-    yield from wrapped(error_sentence(diagnosis))
-    for sentence in (rival_sentence(diagnosis), *more, *diagnosis.hints, *unseen_sentences(diagnosis)):
+    yield from wrapped(story.verdict_sentence(diagnosis))
+    yield from wrapped(story.error_sentence(diagnosis))
+    first = story.placement_sentence(diagnosis), story.rival_sentence(diagnosis)
+    for sentence in (*first, *more, *diagnosis.hints, *story.unseen_sentences(diagnosis)):
         if sentence:
             yield from wrapped(sentence[0].upper() + sentence[1:])
     if diagnosis.outliers:

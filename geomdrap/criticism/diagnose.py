@@ -203,6 +203,7 @@ def conclude(
         alike = others if names[-1] in others else alike
     verdict, candidates = _verdict(experiment, model, scatter, names, alike, unexplained)
     steps = _steps(experiment, rounds, names, model)
+    placement = values_of(experiment, model, scatter, "placement")
     return Diagnosis(
         verdict=verdict,
         candidates=candidates,
@@ -210,13 +211,13 @@ def conclude(
         experiment=experiment,
         steps=steps,
         noise_floor=_floor(experiment, scatter),
-        placement=values_of(experiment, model, scatter, "placement"),
+        placement=placement,
         tried=tried_of(experiment, rounds, names, model, scatter, near),
         effects=tuple(model.model.built(model.values)),
         scatter=scatter,
         leftover=left,
         outliers=outliers_of(experiment, model),
-        hints=hints_for(experiment, rounds, verdict, candidates, model, left),
+        hints=hints_for(experiment, rounds, verdict, candidates, model, left, placement),
         notes=(*notes, *said_of_coarser(meant, experiment, model), *_failures(experiment, rounds)),
     )
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from geomdrap.criticism.fit import FIRST_STEPS, STEPS, Fit, fit, take_slopes
 from geomdrap.criticism.likelihood import is_noise, square_beside
-from geomdrap.criticism.start import LEAST_GAIN, TURNS, Glance, glance, start_values
+from geomdrap.criticism.start import LEAST_GAIN, TURNS, Glance, as_meant, glance, is_astray, start_values
 from geomdrap.effects import make
 from geomdrap.errors import GeomdrapError
 
@@ -30,6 +30,7 @@ NEARLY = 0.02  # of the misfit: a model that leaves less, and little beside the 
 HOPELESS = 0.5  # of the way from the best model back to the base
 HALF, MOSTLY = 0.5, 0.1  # of the misfit: what the best model leaves of it
 NO_RIVAL = 0.85, 0.35  # the same, of a look in these: true effects left up to a fifth, with a threshold a half
+FAR_ASTRAY = (5.0, 5.0, 5.0)  # mm, mm, degrees: no careful lay-up is as far off
 FAR = 0.1  # the same, where the best model leaves next to nothing and a few values were probed
 
 
@@ -234,6 +235,11 @@ def add_effect(
     patience = 2 * FIRST_STEPS if kind.costly else FIRST_STEPS
     way = start, model.steps, low, high, slopes, most, enough, patience
     found = fit(predict, experiment.measured, whiten, *way, beside=predict.beside)
+    if is_astray(base, FAR_ASTRAY) and not kind.costly:
+        # without positions another valley of the placement, centimetres away, may have taken the effect's place
+        there = np.append(as_meant(base), found.values[own])
+        again = fit(predict, experiment.measured, whiten, there, model.steps, low, high)
+        found = min(found, again, key=lambda one: one.chi2)
     return Fitted(model, found)
 
 

@@ -92,8 +92,8 @@ def try_effects(
     scatter, likelihood = judge.best_scatter(linear, order)
     block = blocks_of(experiment.at)[experiment.point_of()[rows]]
     errors = [held_out_error(r.residual, r.slopes, judge.noise, block) for r in linear]
-    # shares and held-out errors are of the misfit above noise and the scatter that the best model leaves
-    best = scatter[int(likelihood.argmax())]
+    # shares and held-out errors are of the misfit above noise and the scatter that the best fitted model leaves
+    best = scatter[max((k for k, m in enumerate(models) if not m.looked_at_only), key=lambda k: likelihood[k])]
     squares = [judge.square(best, r) for r in linear]
     floor = float(rows.sum())
     spreads = [deviations(judge.whiten(s)(r.slopes)) for s, r in zip(scatter[1:], linear[1:], strict=True)]

@@ -90,9 +90,9 @@ def glance(
     return max(seen, key=lambda one: one.gain)
 
 
-def is_astray(base: Fitted) -> bool:
-    """Whether a base lies elsewhere than the ply was meant to."""
-    return bool((np.abs(base.values[:3]) > ASTRAY).any())
+def is_astray(base: Fitted, by: tuple[float, float, float] = ASTRAY) -> bool:
+    """Whether a base lies elsewhere than the ply was meant to, ``by`` so many mm, mm or degrees."""
+    return bool((np.abs(base.values[:3]) > by).any())
 
 
 def as_meant(base: Fitted) -> np.ndarray:

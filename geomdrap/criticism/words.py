@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.criticism.diagnosis import AMBIGUOUS, UNKNOWN
+from geomdrap.criticism.diagnosis import AMBIGUOUS, UNKNOWN, Value
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.leftover import Leftover
 from geomdrap.criticism.locked import LOCKING, first_stop
-from geomdrap.criticism.model import Fitted
+from geomdrap.criticism.model import FAR_ASTRAY, Fitted
+from geomdrap.measurement.marks import mark_spacing
 
 if TYPE_CHECKING:
     from geomdrap.criticism.search import Round
 
+ABOUT_A_MARK = 0.35  # of the spacing of the marks: a ply that far off may have its labels off by one
 SEEN = {
     "along": "along the warp",
     "across": "across the warp",
@@ -33,6 +35,7 @@ def hints_for(
     candidates: Sequence[str],
     model: Fitted,
     left: Leftover,
+    placement: Sequence[Value],
 ) -> tuple[str, ...]:
     """Sentences for the user."""
     hints = []
@@ -59,6 +62,7 @@ def hints_for(
             f"something is left that no effect of the library explains, {left.size:.1f} times the noise, {places}"
         )
         hints += trends(experiment, model)
+    hints += misplaced(experiment, placement)
     if experiment.measurement.shear is None:
         hints.append("the table has no shear angles: springback and other effects on shear alone cannot be seen")
     if not experiment.measurement.labelled:
@@ -67,6 +71,19 @@ def hints_for(
             "the shear as it is are not visible; draw a grid on the flat fabric to see them"
         )
     return tuple(f"{hint}." for hint in hints)
+
+
+def misplaced(experiment: Experiment, placement: Sequence[Value]) -> list[str]:
+    """What to check where the ply seems to lie further from its place than a careful lay-up leaves it."""
+    far = [v for v, most in zip(placement, FAR_ASTRAY, strict=True) if abs(v.value) > most + 1.96 * v.sigma]
+    if not far:
+        return []
+    where = " and ".join(f"{v.name} = {v.value:.3g} {v.unit}" for v in far)
+    marks = (mark_spacing(experiment.measurement.u), mark_spacing(experiment.measurement.v), None)
+    pairs = zip(placement, marks, strict=True)
+    spacing = [m for v, m in pairs if v in far and m and abs(abs(v.value) / m - 1.0) < ABOUT_A_MARK]
+    labels = f", and that no label is off by a mark (they are {spacing[0]:g} mm apart)" if spacing else ""
+    return [f"the model lays the ply {where} off its place: check the origin and the heading that were given{labels}"]
 
 
 def round_with(rounds: Sequence[Round], names: Sequence[str]) -> Round:

@@ -120,7 +120,7 @@ def _nearest_allowed(
 ) -> np.ndarray | None:
     """Numbers (k,) of the allowed centres nearest to points (k, 3); None if none is allowed.
 
-    Those nearest to the points are asked about first: mostly that is few of all.
+    Those nearest to the points are asked about first where that is few of all, as it mostly is.
     """
     from scipy.spatial import cKDTree
 
@@ -128,7 +128,7 @@ def _nearest_allowed(
     verdict = np.full(len(centres), UNKNOWN)
     found = np.full(len(points), -1)
     todo, seen = np.arange(len(points)), 0
-    for many in LOOKS:
+    for many in LOOKS if LOOKS[0] * len(points) < len(centres) else ():
         look = min(many, len(centres))
         near = np.asarray(tree.query(points[todo], k=range(seen + 1, look + 1))[1])
         asked = np.unique(near[verdict[near] == UNKNOWN])
@@ -139,8 +139,6 @@ def _nearest_allowed(
         todo, seen = todo[~has], look
         if len(todo) == 0:
             return found
-        if seen == len(centres):
-            return None
     asked = np.flatnonzero(verdict == UNKNOWN)
     verdict[asked] = allowed(centres[asked])
     good = np.flatnonzero(verdict == 1)

@@ -13,7 +13,7 @@ from geomdrap.fields.cut_lines import torn
 from geomdrap.fields.flat import flat_pattern
 from geomdrap.fields.result import Areas, BareRegion, Checks, Drape, FlatPattern, ShearStatistics
 from geomdrap.fields.trim import Trimmed, trim
-from geomdrap.fishnet import Status
+from geomdrap.fishnet import Effect, Status
 from geomdrap.geodesic.compiled import kernel
 
 if TYPE_CHECKING:
@@ -75,10 +75,16 @@ def _tear(net: Net, trimmed: Trimmed) -> tuple[str, ...]:
 
 
 def stretch(net: Net) -> float:
-    """How much larger than flat the fabric is where its yarns are strained and nothing shears, 1 for most nets."""
-    if net.sides is None:
+    """How much larger than flat the fabric is where its yarns are strained and nothing shears, 1 for most nets.
+
+    A net on which an effect of the user's has acted may be so without saying; the lines between its nodes tell.
+    """
+    sides = net.sides
+    if sides is None and any(type(e).on_net is not Effect.on_net for e in net.effects):
+        sides = tuple(np.linalg.norm(np.diff(net.points, axis=axis), axis=2) for axis in (0, 1))
+    if sides is None:
         return 1.0
-    warp, weft = net.sides[0] / np.diff(net.u)[:, None], net.sides[1] / np.diff(net.v)[None, :]
+    warp, weft = sides[0] / np.diff(net.u)[:, None], sides[1] / np.diff(net.v)[None, :]
     return float(np.nanmean(warp) * np.nanmean(weft)) if np.isfinite(warp).any() and np.isfinite(weft).any() else 1.0
 
 

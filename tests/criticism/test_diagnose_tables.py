@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import geomdrap as gd
-from geomdrap.blind import make
+from geomdrap.blind import make, unseal
 from geomdrap.criticism.before_after import before_and_after
 from geomdrap.criticism.experiment import Layup
 from geomdrap.criticism.prepare import prepare
-from geomdrap.criticism.story import table_rows
+from geomdrap.criticism.story import placement_sentence, table_rows
 
 CHEAP = ("yarn-extension", "weave-skew", "springback")
 
@@ -156,3 +156,26 @@ def test_locking_would_be_seen_at_no_angle_that_the_ply_does_not_reach(plain):
     assert (name, unit) == ("angle", "deg")
     assert amount is not None
     assert 1.0 < 90.0 - amount <= d.experiment.top_shear
+
+
+def test_a_ply_that_seems_to_lie_centimetres_away_is_looked_for_where_it_was_meant_to_lie(tmp_path):
+    """Directions do not say where a ply lies: without the steering they fitted best 26 mm off, and with it stayed."""
+    make(11, effect="steering", part="valley", columns="directions", points=120, folder=tmp_path)
+    surface, measurement, told = told_of(tmp_path)
+    d = gd.diagnose(surface, measurement, **told, effects=("steering", "weave-skew"))
+    true = unseal(tmp_path)["effect"]["steering"]
+    assert d.verdict == "steering"
+    assert all(abs(v.value) < 10.0 for v in d.placement)
+    assert all(abs(v.value - true[v.name]) < 3.0 * v.sigma for v in row(d, "steering").values)
+
+
+def test_labels_that_are_off_by_a_mark_lay_the_ply_elsewhere_and_that_is_said(plain):
+    surface, measurement, told, right = plain
+    d = gd.diagnose(surface, replace(measurement, u=measurement.u + 16.0), **told, effects=CHEAP)
+    said = [hint for hint in d.hints if "off its place" in hint]
+    assert len(said) == 1
+    assert "du = -" in said[0] or "du = 1" in said[0]
+    assert "no label is off by a mark" in said[0]
+    assert not any("off its place" in hint for hint in right.hints)
+    # and where the ply lies is told beside an effect, too
+    assert "dangle" in placement_sentence(d)

@@ -45,3 +45,12 @@ def test_the_story_names_files_that_are_there():
     for name in ("heat_growth.py", "pictures/new-effect-residuals.png", "pictures/new-effect-improved.png"):
         assert f"({name})" in story
         assert (SAMPLES / name).is_file()
+
+
+def test_a_drape_with_it_has_as_much_fabric_as_it_covers(warm):
+    """The net has grown with the part, and says so by its points alone: it was warned of too little fabric."""
+    gd.effects.load_plugin(SAMPLES / "heat_growth.py")
+    told = warm[1]
+    grown = gd.effects.make("heat-growth", strain=0.0078)
+    net = gd.drape(told["surface"], told["origin"], told["angle"], effects=[grown], project=True)
+    assert not any("less than" in warning for warning in gd.evaluate(net).warnings)
