@@ -99,37 +99,62 @@ def add_own(
 
 
 @tight
-def add_passed(a: np.ndarray, fronts: Fronts, place: np.ndarray, g: int) -> None:
-    """Add to the front a (s, s) what front g has passed on."""
+def add_passed(a: np.ndarray, fronts: Fronts, place: np.ndarray, g: int, to: np.ndarray) -> None:
+    """Add to the front a (s, s) what front g has passed on; ``to`` is room for places of its unknowns."""
     at, left, from_ = fronts.start[g] + fronts.own[g], fronts.left, fronts.passed[g]
     size = fronts.start[g + 1] - at
     for p in range(size):
-        to = place[fronts.unknowns[at + p]]
+        to[p] = place[fronts.unknowns[at + p]]
+    for p in range(size):
+        row = to[p]
         for q in range(p, size):
-            other = place[fronts.unknowns[at + q]]
-            a[min(to, other), max(to, other)] += left[from_ + p * size + q]
+            other = to[q]
+            if other >= row:
+                a[row, other] += left[from_ + p * size + q]
+            else:
+                a[other, row] += left[from_ + p * size + q]
 
 
 @tight
-def reduce_right(a: np.ndarray, fronts: Fronts, f: int, x: np.ndarray) -> None:
-    """Eliminate front f, of which a (s, s) has the rows D·Lᵀ, from the right-hand side x."""
-    first = fronts.start[f]
+def reduce_right(a: np.ndarray, fronts: Fronts, f: int, x: np.ndarray, own: np.ndarray) -> None:
+    """Eliminate front f, of which a (s, s) has the rows D·Lᵀ, from the right-hand side x; ``own`` is room for s."""
+    first, s = fronts.start[f], a.shape[0]
+    for q in range(s):
+        own[q] = x[fronts.unknowns[first + q]]
     for t in range(fronts.own[f]):
-        z = x[fronts.unknowns[first + t]] / a[t, t]
-        for q in range(t + 1, a.shape[0]):
-            x[fronts.unknowns[first + q]] -= a[t, q] * z
+        z = own[t] / a[t, t]
+        for q in range(np.uint64(t + 1), np.uint64(s)):
+            own[q] -= a[t, q] * z
+    for q in range(s):
+        x[fronts.unknowns[first + q]] = own[q]
 
 
 @tight
-def substitute_back(fronts: Fronts, f: int, x: np.ndarray) -> None:
-    """Solve for the unknowns of front f, whose rows D·Lᵀ are kept, in place in x."""
+def substitute_back(fronts: Fronts, f: int, x: np.ndarray, own: np.ndarray) -> None:
+    """Solve for the unknowns of front f, whose rows D·Lᵀ are kept, in place in x; ``own`` is room for its unknowns.
+
+    Sums run in four parts, which wait for one another less.
+    """
     first, rows, from_ = fronts.start[f], fronts.rows, fronts.held[f]
     s = fronts.start[f + 1] - first
+    for q in range(s):
+        own[q] = x[fronts.unknowns[first + q]]
     for t in range(fronts.own[f] - 1, -1, -1):
-        z = x[fronts.unknowns[first + t]]
-        for q in range(t + 1, s):
-            z -= rows[from_ + t * s + q] * x[fronts.unknowns[first + q]]
-        x[fronts.unknowns[first + t]] = z / rows[from_ + t * s + t]
+        row = from_ + t * s
+        z0, z1, z2, z3 = own[t], 0.0, 0.0, 0.0
+        q = t + 1
+        while q + 4 <= s:
+            z0 -= rows[row + q] * own[q]
+            z1 -= rows[row + q + 1] * own[q + 1]
+            z2 -= rows[row + q + 2] * own[q + 2]
+            z3 -= rows[row + q + 3] * own[q + 3]
+            q += 4
+        while q < s:
+            z0 -= rows[row + q] * own[q]
+            q += 1
+        own[t] = (z0 + z1 + z2 + z3) / rows[row + t]
+    for t in range(fronts.own[f]):
+        x[fronts.unknowns[first + t]] = own[t]
 
 
 @kernel
@@ -150,6 +175,7 @@ def solve(
     """
     m, rows, left = len(fronts.own), fronts.rows, fronts.left
     place, x = np.zeros(len(fronts.home), np.int64), np.zeros(len(fronts.home))
+    to, own = np.empty(len(fronts.home), np.int64), np.empty(len(fronts.home))
     x[: len(right)] = right
     for f in range(m):
         first, s, e = fronts.start[f], fronts.start[f + 1] - fronts.start[f], fronts.own[f]
@@ -159,14 +185,14 @@ def solve(
         a[:] = 0.0
         for g in fronts.halves[f]:
             if g >= 0:
-                add_passed(a, fronts, place, g)
+                add_passed(a, fronts, place, g, to)
         add_own(a, f, fronts, place, nodes, number, blocks, slopes, soft)
         eliminate(a, e)
-        reduce_right(a, fronts, f, x)
+        reduce_right(a, fronts, f, x, own)
         rows[fronts.held[f] : fronts.held[f] + e * s] = fronts.front[: e * s]
         for t in range(s - e):
             at = fronts.passed[f] + t * (s - e)
             left[at + t : at + s - e] = a[e + t, e + t :]
     for f in range(m - 1, -1, -1):
-        substitute_back(fronts, f, x)
+        substitute_back(fronts, f, x, own)
     return x[: len(right)]
