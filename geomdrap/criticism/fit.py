@@ -51,6 +51,7 @@ def fit(
     patience: int = 2 * FIRST_STEPS,
     small: float = SMALL,
     beside: Beside = lambda at, step: None,
+    lasting: int = 0,
 ) -> Fit:
     """Parameters (p,) between ``low`` and ``high`` with the least squares of ``whiten(measured - predict(p))``.
 
@@ -59,6 +60,7 @@ def fit(
     most ``most`` steps are tried; a fit that is above a chi-square of ``enough`` ``FIRST_STEPS`` after the start, or
     after slopes were taken anew, but at the latest after ``patience`` steps, is given up.
     A step that promises or gains less than ``small`` of chi-square ends it. ``beside`` as of ``take_slopes``.
+    If any are ``lasting``, slopes of the parameters after the first so many are taken anew at the start.
     """
     values = np.clip(np.asarray(start, dtype=float), low, high)
     residual = measured - predict(values)
@@ -66,8 +68,9 @@ def fit(
     filled = np.where(lost, 0.0, residual)
     jacobian = np.zeros((len(residual), len(values))) if slopes is None else slopes.copy()
     free = np.flatnonzero(high > low)  # the others keep the slopes that they have
-    if slopes is None:
-        jacobian[:, free] = take_slopes(predict, values, predict(values), steps, low, high, free, beside)[:, free]
+    if slopes is None or lasting:
+        new = free[free >= lasting]
+        jacobian[:, new] = take_slopes(predict, values, predict(values), steps, low, high, new, beside)[:, new]
     chi2 = _square(whiten(filled))
     damping = 0.0
     fresh, good = slopes is None, jacobian

@@ -55,10 +55,14 @@ def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted)
     1/(ratio² - 1) is left, a third where it was halved. Where no step was taken, nothing is known of it.
     """
     model = old.model
-    # slopes of the coarser ones, or worn ones, would hide how heading and stiffness make up for each other
-    way = model.steps, *model.bounds, None, REFINEMENTS
     predict = Predictor(finer, model)
-    found = fit(predict, finer.measured, whiten, old.values, *way, beside=predict.beside)
+    if any(make(name).costly and make(name).stage == "fabric" for name in model.effects):
+        # slopes of the coarser ones, or worn ones, would hide how heading and stiffness make up for each other
+        slopes, lasting = None, 0
+    else:
+        slopes, lasting = old.fit.slopes, len(Model(()).neutral)
+    way = model.steps, *model.bounds, slopes, REFINEMENTS
+    found = fit(predict, finer.measured, whiten, old.values, *way, beside=predict.beside, lasting=lasting)
     less = _from_less(model, predict, finer.measured, whiten, found)
     if less.chi2 < found.chi2:
         found = fit(predict, finer.measured, whiten, less.values, *way, beside=predict.beside)

@@ -95,7 +95,16 @@ def test_what_is_held_is_not_moved_to_take_slopes_and_keeps_its_own():
 
     start, steps = np.array([2.0, 0.3]), np.array([0.1, 0.2])
     slopes = np.array([[-5.0, 0.0], [0.3, 2.0], [0.0, 1.0]])  # the first is wrong, and is taken anew
-    found = fit(predict, np.array([1.0, 0.3, 0.3]), lambda a: a, start, steps, np.array([0.0, 0.3]), np.array([9.0, 0.3]), slopes)
+    found = fit(
+        predict,
+        np.array([1.0, 0.3, 0.3]),
+        lambda a: a,
+        start,
+        steps,
+        np.array([0.0, 0.3]),
+        np.array([9.0, 0.3]),
+        slopes,
+    )
     assert all(values[1] == 0.3 for values in asked)
     assert found.values[0] == pytest.approx(1.0, abs=0.1)
     np.testing.assert_allclose(found.slopes[:, 1], slopes[:, 1], atol=1e-12)
@@ -116,7 +125,8 @@ def test_slopes_are_taken_within_a_range_smaller_than_the_step():
 def test_a_fit_ends_where_a_step_gains_less_than_is_asked():
     y = curve(np.array([3.0, 1.5]))
     chi2 = [
-        fit(curve, y, lambda a: a / 0.02, np.array([1.0, 0.5]), STEPS, *WIDE, small=small).chi2 for small in (1e-9, 50.0)
+        fit(curve, y, lambda a: a / 0.02, np.array([1.0, 0.5]), STEPS, *WIDE, small=small).chi2
+        for small in (1e-9, 50.0)
     ]
     assert chi2[0] < 1e-3 < chi2[1]
 
@@ -177,3 +187,21 @@ def test_what_a_small_step_changes_is_asked_before_a_prediction():
     assert len(asked) == 2
     np.testing.assert_allclose(got[:, 0], 7.0)
     np.testing.assert_array_equal(got[:, 1], plain[:, 1])
+
+
+def test_slopes_that_last_are_not_taken_at_the_start():
+    asked = []
+
+    def predict(p):
+        asked.append(p.copy())
+        return curve(p)
+
+    start = np.array([1.5, 0.8])
+    known = take_slopes(curve, start, curve(start), STEPS, *WIDE)
+    wrong = known.copy()
+    wrong[:, 1] = 0.0  # of the second: taken anew
+    got = fit(predict, curve(np.array([2.0, 1.0])), lambda a: 1e3 * a, start, STEPS, *WIDE, wrong, lasting=1)
+    np.testing.assert_allclose(got.values, [2.0, 1.0], atol=1e-3)
+    moved = [np.flatnonzero(p != start) for p in asked[:4]]
+    assert [1] in [list(m) for m in moved]
+    assert [0] not in [list(m) for m in moved]
