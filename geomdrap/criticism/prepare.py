@@ -78,7 +78,8 @@ def prepare(
     mask = np.isfinite(values) & np.isfinite(table) & np.isfinite(at).all(axis=1)[:, None]
     _require_places(measurement, at, mask)
     given = (sigma_xyz, sigma_shear, sigma_direction)
-    sigma, more = _noise(measurement, channels, values, values - table, at, given)
+    sigma, more, doubts = _noise(measurement, channels, values, values - table, at, given)
+    warnings += doubts
     mask &= ~spoilt(channels, mask.shape, find_outliers(net, measurement, found, *_by_kind(channels, sigma)))
     if not mask.any():
         raise MeasurementError(f"{measurement.source}: every point stands out from its neighbours; check the table")
@@ -144,14 +145,15 @@ def _noise(
     residual: np.ndarray,
     at: np.ndarray,
     given: tuple[float | None, float | None, float | None],
-) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Noise (n, c) of every value, and notes on it; ``given`` for positions, shear and directions.
+) -> tuple[np.ndarray, tuple[str, ...], tuple[str, ...]]:
+    """Noise (n, c) of every value, notes and warnings; ``given`` for positions, shear and directions.
 
     Raises MeasurementError where there is no way to know it.
     """
     sigma = np.full(values.shape, np.nan)
     repeats = repeats_of(measurement)
     notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     columns = (measurement.sigma_xyz, measurement.sigma_shear, measurement.sigma_direction)
     shear = given[1]
     for kind, column, told in zip(OPTIONS, columns, given, strict=True):
@@ -161,13 +163,14 @@ def _noise(
         if kind == "direction":
             noise, more = noise_of_directions(column, told, shear, residual[:, own], repeats, at)
         else:
-            noise, more = noise_of(kind, column, told, values[:, own], repeats, residual[:, own], at)
+            name = OPTIONS[kind].removeprefix("--").replace("-", "_")
+            noise, more = noise_of(name, column, told, values[:, own], repeats, residual[:, own], at)
         sigma[:, own] = _known(noise, kind, measurement)[:, None]
         shear = noise.typical if kind == "shear" else shear
         read = noise.source in (REPEATS, RESIDUAL)
         notes += (f"noise of the {kind} {noise.typical:.2g} {UNITS[kind]}, from {noise.source}",) if read else ()
-        notes += more
-    return sigma, notes
+        warnings += more
+    return sigma, notes, warnings
 
 
 def _known(noise: Noise, kind: str, measurement: Measurement) -> np.ndarray:

@@ -17,6 +17,10 @@ LEAST_REPEATS = 5
 """Degrees of freedom of repeats from which a noise is estimated."""
 DISAGREE = 1.5
 """Factor between the noise given and the one that repeats show from which it is worth a warning."""
+TOO_LARGE, LEAST_NEIGHBOURS = 3.0, 20
+"""Factor between the noise given and what neighbours differ by, from so many points on, that chance does not reach.
+
+Neighbours differ by noise and by structure, so that only a noise that is too large is certain from them."""
 
 DIGITS = 1e-9
 """Of the values: repeats that scatter less are copies."""
@@ -26,6 +30,7 @@ ROUNDING = 1e-6
 COLUMN, GIVEN, REPEATS = "columns of the table", "given", "replicates"
 RESIDUAL = "neighbour differences of the residual"
 SHEAR = "noise of the shear over √2"
+UNITS = {"sigma_xyz": " mm", "sigma_shear": "°", "sigma_direction": "°"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +58,7 @@ def noise_of(
 ) -> tuple[Noise, tuple[str, ...]]:
     """Noise of values (n, k), from the first of: column, given, repeats, neighbour differences; and warnings.
 
+    ``name`` is that of the column, and of the option in Python (``sigma_xyz``), for messages.
     ``column`` (n,) may hold NaN, which the next source fills. ``group`` (n,) numbers the repeats of one mark;
     ``residual`` (n, k) with NaN where there is no prediction, at ``places`` (n, 2). ``otherwise`` is a noise and
     its source for where none of these says it. Raises MeasurementError for a given noise that is not above 0.
@@ -61,14 +67,15 @@ def noise_of(
     repeats, freedom = pooled(values, group)
     if not repeats > DIGITS * float(np.nanmax(np.abs(values), initial=0.0)):
         freedom = 0  # copies of a row are no repeats
-    fallback, source = _fallback(given, repeats, freedom, residual, places)
+    scatter = _scatter(residual, places)
+    fallback, source = _fallback(given, repeats, freedom, residual, scatter)
     if fallback is None and otherwise is not None:
         fallback, source = otherwise
     sigma, source = _filled(column, fallback, source, len(values))
     if sigma is None:
         return Noise(None, None), ()
     noise = Noise(sigma, source)
-    return noise, _disagreement(name, noise, repeats, freedom)
+    return noise, _disagreement(name, noise, repeats, freedom) or _too_large(name, noise, scatter)
 
 
 def noise_of_directions(
@@ -125,18 +132,26 @@ def repeats_of(measurement: Measurement) -> np.ndarray | None:
     return group if len(np.unique(group)) < len(group) else None
 
 
+def _scatter(residual: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """What each residual (n, k) is off its neighbours by, on the scale of its noise; NaN where that is not known."""
+    known = np.isfinite(residual).all(axis=1) & np.isfinite(places).all(axis=1)
+    out = np.full(residual.shape, np.nan)
+    off, factor = deviations(places[known], residual[known])
+    out[known] = off / factor[:, None]
+    return out
+
+
 def _fallback(
-    given: float | None, repeats: float, freedom: int, residual: np.ndarray, places: np.ndarray
+    given: float | None, repeats: float, freedom: int, residual: np.ndarray, scatter: np.ndarray
 ) -> tuple[float | None, str | None]:
     if given is not None:
         return given, GIVEN
     if freedom >= LEAST_REPEATS:
         return repeats, REPEATS
-    known = np.isfinite(residual).all(axis=1) & np.isfinite(places).all(axis=1)
-    if known.sum() < 8:
+    sigma = robust_sigma(scatter)
+    known = np.isfinite(scatter).all(axis=1)
+    if not known.any():
         return None, None
-    off, factor = deviations(places[known], residual[known])
-    sigma = robust_sigma(off / factor[:, None])
     size = float(np.sqrt(np.mean(residual[known] ** 2)))
     return (sigma, RESIDUAL) if sigma > ROUNDING * size else (None, None)
 
@@ -168,4 +183,23 @@ def _disagreement(name: str, noise: Noise, repeats: float, freedom: int) -> tupl
     return (
         f"the replicates scatter by {repeats:.3g}, {word} than the noise of {said:.3g} that is given for {name}: "
         "check which of the two is right",
+    )
+
+
+def _too_large(name: str, noise: Noise, scatter: np.ndarray) -> tuple[str, ...]:
+    """A warning where neighbours (n, k) differ by far less than the noise that was given."""
+    said, source = noise.typical, noise.source or ""
+    if noise.sigma is None or said is None or not source.startswith((GIVEN, COLUMN)):
+        return ()
+    share = robust_sigma(scatter / noise.sigma[:, None])
+    if np.isfinite(scatter).all(axis=1).sum() < LEAST_NEIGHBOURS or not share * TOO_LARGE < 1.0:
+        return ()
+    unit = UNITS.get(name, "")
+    where, what = f"--{name.replace('_', '-')} or {name} of the set-up", "leave it out"
+    if source.startswith(COLUMN):
+        where, what = f"the column {name}", "take the column out"
+    return (
+        f"the noise of {said:.3g}{unit} that is given ({where}) is far too large: neighbouring points differ by "
+        f"noise of {share * said:.2g}{unit} at most; with it little can be found missing: correct it, or {what}, and the "
+        "noise is read from the data",
     )
