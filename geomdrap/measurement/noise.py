@@ -9,6 +9,7 @@ import numpy as np
 
 from geomdrap.errors import MeasurementError
 from geomdrap.measurement.local import deviations, robust_sigma
+from geomdrap.measurement.outliers import LIMIT, stand_out
 
 if TYPE_CHECKING:
     from geomdrap.measurement.measurement import Measurement
@@ -64,7 +65,7 @@ def noise_of(
     its source for where none of these says it. Raises MeasurementError for a given noise that is not above 0.
     """
     require_above_zero(name, given)
-    repeats, freedom = pooled(values, group)
+    repeats, freedom = pooled(values, group, _ordinary(residual, places))
     if not repeats > DIGITS * float(np.nanmax(np.abs(values), initial=0.0)):
         freedom = 0  # copies of a row are no repeats
     scatter = _scatter(residual, places)
@@ -105,11 +106,13 @@ def require_above_zero(name: str, sigma: float | None) -> None:
         raise MeasurementError(f"{name} is a standard deviation and must be above 0, not {sigma:g}")
 
 
-def pooled(values: np.ndarray, group: np.ndarray | None) -> tuple[float, int]:
-    """Standard deviation within the groups (n,) of values (n, k), and its degrees of freedom."""
+def pooled(values: np.ndarray, group: np.ndarray | None, rows: np.ndarray | None = None) -> tuple[float, int]:
+    """Standard deviation within groups (n,) of values (n, k), and its degrees of freedom; of some ``rows`` only."""
     if group is None:
         return float("nan"), 0
     known = np.isfinite(values).all(axis=1)
+    if rows is not None:
+        known &= rows
     values, (_, group) = values[known], np.unique(group[known], return_inverse=True)
     count = np.bincount(group)
     total = sum(_within(values[:, k], group, count) for k in range(values.shape[1]))
@@ -130,6 +133,15 @@ def repeats_of(measurement: Measurement) -> np.ndarray | None:
     _, group = np.unique(labels, axis=0, return_inverse=True)
     group = group.ravel()
     return group if len(np.unique(group)) < len(group) else None
+
+
+def _ordinary(residual: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Rows (n,) bool whose residual (n, k) does not stand out from its neighbours: a slip is no noise of repeats."""
+    known = np.isfinite(residual).all(axis=1) & np.isfinite(places).all(axis=1)
+    ordinary = np.ones(len(residual), bool)
+    if known.any():
+        ordinary[known] = stand_out(places[known], residual[known], None)[1] <= LIMIT
+    return ordinary
 
 
 def _scatter(residual: np.ndarray, places: np.ndarray) -> np.ndarray:
@@ -200,6 +212,6 @@ def _too_large(name: str, noise: Noise, scatter: np.ndarray) -> tuple[str, ...]:
         where, what = f"the column {name}", "take the column out"
     return (
         f"the noise of {said:.3g}{unit} that is given ({where}) is far too large: neighbouring points differ by "
-        f"noise of {share * said:.2g}{unit} at most; with it little can be found missing: correct it, or {what}, and the "
-        "noise is read from the data",
+        f"noise of {share * said:.2g}{unit} at most; with it little can be found missing: correct it, or {what}, "
+        "and the noise is read from the data",
     )

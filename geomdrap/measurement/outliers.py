@@ -57,7 +57,7 @@ def find_outliers(
     if not measurement.labelled:
         residual = np.einsum("ij,ij->i", residual, matched.normal[rows])[:, None]
     found = []
-    off, sigmas = _stand_out(places, residual, None if sigma_xyz is None else sigma_xyz[rows])
+    off, sigmas = stand_out(places, residual, None if sigma_xyz is None else sigma_xyz[rows])
     for k in np.flatnonzero(sigmas > LIMIT).tolist():
         shift = _label_shift(net, measurement, int(rows[k]), residual[k] - off[k])
         size = float(np.linalg.norm(off[k]))
@@ -67,14 +67,14 @@ def find_outliers(
         rows = rows[np.isfinite(measurement.shear[rows])]
         places = np.column_stack([matched.u, matched.v])[rows]
         residual = (measurement.shear - matched.shear)[rows][:, None]
-        off, sigmas = _stand_out(places, residual, None if sigma_shear is None else sigma_shear[rows])
+        off, sigmas = stand_out(places, residual, None if sigma_shear is None else sigma_shear[rows])
         for k in np.flatnonzero(sigmas > LIMIT).tolist():
             line = int(measurement.row[rows[k]])
             found.append(Outlier(int(rows[k]), line, "shear", abs(float(off[k, 0])), float(sigmas[k])))
     return tuple(sorted(found, key=lambda outlier: (outlier.line, outlier.kind)))
 
 
-def _stand_out(places: np.ndarray, values: np.ndarray, sigma: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+def stand_out(places: np.ndarray, values: np.ndarray, sigma: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
     """Deviations (n, k) from the neighbours, and their size (n,) in robust standard deviations.
 
     The scale is the largest of: the noise given, what is usual on the whole part, and what is usual nearby (a steep

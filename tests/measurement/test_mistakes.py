@@ -9,6 +9,7 @@ import pytest
 from analytic_tools import measured
 
 import geomdrap as gd
+from geomdrap.criticism.compare import compare_net
 from geomdrap.measurement.match import match
 from geomdrap.measurement.outliers import find_outliers
 from geomdrap.measurement.plausible import check_labels, require_on_part
@@ -45,6 +46,22 @@ def test_all_slips_of_ten_sigmas_are_found_and_nothing_else(case, seed):
     assert {o.row for o in found if o.kind == "position"} == set(rows.tolist())
     assert {o.row for o in found if o.kind == "shear"} == set(rows[:3].tolist())
     assert {o.line for o in found} == {int(m.row[r]) for r in rows}
+
+
+@pytest.mark.parametrize("times", [2, 3])
+def test_the_one_of_repeated_marks_that_is_far_off_is_the_outlier(case, times):
+    net, m = case
+    rows = np.concatenate([np.arange(len(m)), np.repeat([20, 90, 160, 200, 260], times - 1)])
+    table = m.take(rows)
+    rng = np.random.default_rng(0)
+    points = table.points + rng.normal(0.0, 0.1, (len(table), 3)) * (np.arange(len(table)) >= len(m))[:, None]
+    wrong = len(m) + np.arange(0, 5 * (times - 1), times - 1)  # one repeat of each
+    points[wrong, 2] += 80.0
+    for sigma in (None, SIGMA):
+        c = compare_net(net, replace(table, points=points, row=np.arange(len(table))), sigma_xyz=sigma)
+        assert {o.row for o in c.outliers if o.kind == "position"} == set(wrong.tolist())
+        assert c.scores.position.robust_rms < 1.0
+        assert c.noise_xyz.typical < 0.3
 
 
 @pytest.mark.parametrize("shift", [(1, 0), (0, -1), (-1, 1), (2, 0)])

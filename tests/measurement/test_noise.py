@@ -88,6 +88,19 @@ def test_repeats_that_scatter_more_than_the_noise_given_are_reported():
     assert "less than the noise" in _noise(values=values, given=2.0, group=group)[1][0]
 
 
+@pytest.mark.parametrize("slips", [[400, 403, 407, 410, 414], [401]])
+def test_slips_among_repeats_are_no_noise(slips):
+    places = np.concatenate([_grid()] + [_grid()[:20]])
+    values = np.random.default_rng(0).normal(0.0, 0.2, (420, 3))
+    values[slips, 2] += 80.0
+    group = np.concatenate([np.arange(400), np.arange(20)])
+    noise, said = _noise(values=values, residual=values, places=places, group=group)
+    assert noise.source == "replicates"
+    assert noise.typical == pytest.approx(0.2, rel=0.2)
+    assert said == ()
+    assert _noise(given=0.2, values=values, residual=values, places=places, group=group)[1] == ()
+
+
 def test_a_noise_that_neighbours_contradict_is_questioned():
     places = _grid()
     values = np.random.default_rng(0).normal(0.0, 0.2, (400, 3))
