@@ -18,6 +18,7 @@ from geomdrap.measurement.match import Matched, match
 from geomdrap.measurement.noise import Noise, noise_of, noise_of_directions, repeats_of
 from geomdrap.measurement.outliers import Outlier, find_outliers
 from geomdrap.measurement.plausible import looks_wrong, require_on_part
+from geomdrap.measurement.upright import without_upright
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -95,6 +96,7 @@ def compare_net(
     sigma_direction: float | None = None,
 ) -> Comparison:
     """Compare a net, from whatever model, with measured points; see `compare`."""
+    measurement = without_upright(net.surface, measurement)
     matched = match(net, measurement)
     _require_matches(measurement, matched)
     away = measurement.points - matched.point
@@ -118,7 +120,8 @@ def compare_net(
         weft_turn=weft,
         noise_xyz=noises[0],
         noise_shear=noises[1],
-        noise_turn=noises[2],
+        noise_warp=noises[2],
+        noise_weft=noises[3],
         outliers=outliers,
         trusted=_trusted(matched, outliers),
         places=places_of(net, matched),
@@ -158,8 +161,8 @@ def _noises(
     shear: np.ndarray | None,
     turned: tuple[np.ndarray | None, np.ndarray | None],
     given: tuple[float | None, float | None, float | None],
-) -> tuple[tuple[Noise, Noise, Noise], tuple[str, ...]]:
-    """Noise of coordinates, shear and directions, and warnings about them; ``given`` of the same three."""
+) -> tuple[tuple[Noise, Noise, Noise, Noise], tuple[str, ...]]:
+    """Noise of coordinates, shear, warp and weft, and warnings; ``given`` of coordinates, shear and directions."""
     sigma_xyz, sigma_shear, sigma_direction = given
     group = repeats_of(measurement)
     places = np.column_stack([matched.u, matched.v])
@@ -172,16 +175,13 @@ def _noises(
         of_shear, more = noise_of(
             "sigma_shear", measurement.sigma_shear, sigma_shear, values, group, shear[:, None], places
         )
-    known = [turn[:, None] for turn in turned if turn is not None]
-    of_turn = Noise(None, None)
-    if known:
-        turn = np.hstack(known)
-        column = measurement.sigma_direction
-        of_turn, last = noise_of_directions(
-            column, sigma_direction, of_shear.typical or sigma_shear, turn, group, places
-        )
-        more = (*more, *last)
-    return (xyz, of_shear, of_turn), (*said, *more)
+    column, shear_told = measurement.sigma_direction, of_shear.typical or sigma_shear
+    of_turn = {0: Noise(None, None), 1: Noise(None, None)}
+    for k, turn in enumerate(turned):
+        if turn is not None:
+            of_turn[k], last = noise_of_directions(column, sigma_direction, shear_told, turn[:, None], group, places)
+            more = (*more, *(words for words in last if words not in more))
+    return (xyz, of_shear, of_turn[0], of_turn[1]), (*said, *more)
 
 
 def _trusted(matched: Matched, outliers: tuple[Outlier, ...]) -> np.ndarray:

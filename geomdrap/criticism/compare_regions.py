@@ -91,8 +91,8 @@ def _in_sigmas(comparison: Comparison) -> list[np.ndarray]:
     kinds = [(comparison.vector, comparison.noise_xyz.sigma)]
     if comparison.shear is not None:
         kinds.append((comparison.shear[:, None], comparison.noise_shear.sigma))
-    turns = [turn for turn in (comparison.warp_turn, comparison.weft_turn) if turn is not None]
-    kinds += [(turn[:, None], comparison.noise_turn.sigma) for turn in turns]
+    turns = ((comparison.warp_turn, comparison.noise_warp), (comparison.weft_turn, comparison.noise_weft))
+    kinds += [(turn[:, None], noise.sigma) for turn, noise in turns if turn is not None]
     return [values / (_usual(values) if sigma is None else sigma[:, None]) for values, sigma in kinds]
 
 

@@ -16,6 +16,7 @@ from geomdrap.measurement.match import Matched, match
 from geomdrap.measurement.noise import REPEATS, RESIDUAL, Noise, noise_of, noise_of_directions, repeats_of
 from geomdrap.measurement.outliers import find_outliers
 from geomdrap.measurement.plausible import looks_wrong, require_on_part
+from geomdrap.measurement.upright import without_upright
 
 if TYPE_CHECKING:
     from geomdrap.measurement import Measurement
@@ -45,6 +46,7 @@ def prepare(
     of directions, where these do not say it, from that of the shear. Raises MeasurementError where nothing can be
     compared, or points at fewer than ``FEWEST_PLACES`` places.
     """
+    measurement = without_upright(surface, measurement)
     warnings = [*measurement.warnings, *require_on_part(surface, measurement)]
     notes = [*note_on(surface)]
     measurement = thinned(measurement, notes)
@@ -156,21 +158,27 @@ def _noise(
     warnings: tuple[str, ...] = ()
     columns = (measurement.sigma_xyz, measurement.sigma_shear, measurement.sigma_direction)
     shear = given[1]
-    for kind, column, told in zip(OPTIONS, columns, given, strict=True):
-        own = [c for c, name in enumerate(channels) if NOT_POSITION.get(name, "position") == kind]
-        if not own:
-            continue
+    for kind, own in _alike(channels):
+        k = list(OPTIONS).index(kind)
         if kind == "direction":
-            noise, more = noise_of_directions(column, told, shear, residual[:, own], repeats, at)
+            noise, more = noise_of_directions(columns[k], given[k], shear, residual[:, own], repeats, at)
         else:
             name = OPTIONS[kind].removeprefix("--").replace("-", "_")
-            noise, more = noise_of(name, column, told, values[:, own], repeats, residual[:, own], at)
+            noise, more = noise_of(name, columns[k], given[k], values[:, own], repeats, residual[:, own], at)
         sigma[:, own] = _known(noise, kind, measurement)[:, None]
         shear = noise.typical if kind == "shear" else shear
         read = noise.source in (REPEATS, RESIDUAL)
-        notes += (f"noise of the {kind} {noise.typical:.2g} {UNITS[kind]}, from {noise.source}",) if read else ()
-        warnings += more
+        what = f"{kind} of the {channels[own[0]]}" if kind == "direction" else kind
+        notes += (f"noise of the {what} {noise.typical:.2g} {UNITS[kind]}, from {noise.source}",) if read else ()
+        warnings += tuple(words for words in more if words not in warnings)
     return sigma, notes, warnings
+
+
+def _alike(channels: tuple[str, ...]) -> list[tuple[str, list[int]]]:
+    """Kinds of channels that are of one noise, with the channels' numbers: positions, shear, warp, weft."""
+    places = [k for k, name in enumerate(channels) if name not in NOT_POSITION]
+    others = [(NOT_POSITION[name], [k]) for k, name in enumerate(channels) if name in NOT_POSITION]
+    return [*([("position", places)] if places else []), *others]
 
 
 def _known(noise: Noise, kind: str, measurement: Measurement) -> np.ndarray:

@@ -94,10 +94,18 @@ def noise_of_directions(
     """
     require_above_zero("sigma_shear", shear)
     otherwise = None if shear is None else (shear / float(np.sqrt(2.0)), SHEAR)
+    turn = _unwrapped(turn)
     noise, said = noise_of("sigma_direction", column, given, turn, group, turn, places, otherwise)
     if otherwise is not None and noise.source is not None and noise.source.endswith(SHEAR):
         said = (*said, f"the noise of the directions, {otherwise[0]:.3g}°, is the {SHEAR}: nothing else says it")
     return noise, said
+
+
+def _unwrapped(turn: np.ndarray) -> np.ndarray:
+    """Angles (n, k), degrees, of directions without a head within 90 degrees of their mean, column by column."""
+    twice = np.exp(2j * np.radians(turn))
+    mean = np.degrees(np.angle(np.nansum(twice, axis=0))) / 2.0
+    return np.asarray(mean + 90.0 - (mean + 90.0 - turn) % 180.0)
 
 
 def require_above_zero(name: str, sigma: float | None) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from geomdrap.errors import MeasurementError
 from geomdrap.measurement.marks import mark_spacing
+from geomdrap.measurement.plausible_yarns import check_directions
 
 if TYPE_CHECKING:
     from geomdrap.fishnet import Net
@@ -101,8 +102,9 @@ def _labels_agree(measurement: Measurement, factor: float) -> bool:
 
 
 def looks_wrong(net: Net, measurement: Measurement, found: Matched) -> tuple[str, ...]:
-    """Warnings where labels or shear angles are probably others than the table says."""
-    return (*check_labels(net, measurement), *check_shear(measurement.shear, found.shear, measurement.source))
+    """Warnings where labels, directions or shear angles are probably others than the table says."""
+    shear = check_shear(measurement.shear, found.shear, measurement.source)
+    return (*check_labels(net, measurement), *check_directions(measurement, found), *shear)
 
 
 def check_labels(net: Net, measurement: Measurement) -> tuple[str, ...]:
