@@ -90,7 +90,8 @@ def find(name: str) -> type[Effect]:
     if name not in known:
         near = get_close_matches(name, known, 1, 0.7)
         meant = f" (is {near[0]} meant?)" if near else ""
-        raise EffectError(f"there is no effect {name!r}{meant}; the effects are {', '.join(known)}")
+        own = "" if near else "; one of your own comes with its file (--plugin, or gd.effects.load_plugin)"
+        raise EffectError(f"there is no effect {name!r}{meant}; the effects are {', '.join(known)}{own}")
     return known[name]
 
 
