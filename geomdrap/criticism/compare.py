@@ -13,6 +13,7 @@ from geomdrap.criticism.smooth import SmoothTool, note_on
 from geomdrap.errors import MeasurementError
 from geomdrap.fishnet import drape
 from geomdrap.fishnet.pitch import choose_pitch, coarse_facets
+from geomdrap.measurement.lines import FEWEST
 from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
 from geomdrap.measurement.match import Matched, match
 from geomdrap.measurement.noise import Noise, noise_of, noise_of_directions, repeats_of
@@ -131,7 +132,7 @@ def compare_net(
             *measurement.warnings,
             *said,
             *looks_wrong(net, measurement, matched),
-            *_words(outliers),
+            *_words(measurement, outliers),
         ),
     )
 
@@ -190,15 +191,34 @@ def _trusted(matched: Matched, outliers: tuple[Outlier, ...]) -> np.ndarray:
     return trusted
 
 
-def _words(outliers: tuple[Outlier, ...]) -> tuple[str, ...]:
+def _words(measurement: Measurement, outliers: tuple[Outlier, ...]) -> tuple[str, ...]:
     """Sentences on the outliers: how many, and which labels seem wrong."""
     out = []
     if outliers:
         lines = ", ".join(str(line) for line in sorted({outlier.line for outlier in outliers})[:8])
         more = ", …" if len({outlier.line for outlier in outliers}) > 8 else ""
         out.append(f"{len(outliers)} values stand out from their neighbours (lines {lines}{more}) and are set apart")
-    for outlier in [outlier for outlier in outliers if outlier.shift is not None][:8]:
+    told, left = _words_on_lines(measurement, [one for one in outliers if one.shift is not None])
+    for outlier in left[:8]:
         a, b = outlier.shift or (0, 0)
         where = f"{a:+d} along u and {b:+d} along v"
-        out.append(f"line {outlier.line}: the label seems to be off; the mark fits {where} (in marks)")
-    return tuple(out)
+        told.append(f"line {outlier.line}: the label seems to be off; the mark fits {where} (in marks)")
+    return (*out, *told)
+
+
+def _words_on_lines(measurement: Measurement, shifted: list[Outlier]) -> tuple[list[str], list[Outlier]]:
+    """A sentence for each line of marks that are off alike, and the outliers of no such line."""
+    told, left = [], shifted
+    for name, labels, shifts in (("v", measurement.v, {(1, 0), (-1, 0)}), ("u", measurement.u, {(0, 1), (0, -1)})):
+        if labels is None:
+            continue
+        for shift, level in sorted({(one.shift, float(labels[one.row])) for one in left if one.shift in shifts}):
+            own = [one for one in left if one.shift == shift and labels[one.row] == level]
+            if len(own) >= FEWEST and shift is not None:
+                where = f"{shift[0]:+d} along u and {shift[1]:+d} along v"
+                told.append(
+                    f"the {len(own)} marks with {name} = {level:g} mm: all labels of this line seem to be off; they "
+                    f"fit {where} (in marks)"
+                )
+                left = [one for one in left if one not in own]
+    return told, left

@@ -1,4 +1,4 @@
-"""Single points that do not go with their neighbours: slips of the instrument, and labels off by a mark or two."""
+"""Points that do not go with their neighbours: slips of the instrument, and labels off by a mark or two."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.measurement.lines import wrong_lines
 from geomdrap.measurement.local import deviations, neighbours, quantile_of_size, robust_sigma
 from geomdrap.measurement.marks import mark_spacing
 
@@ -33,6 +34,7 @@ class Outlier:
     """A point that stands out: ``row`` its number in the measurement, ``line`` in the file; position or shear.
 
     ``size`` is what it is off its neighbours by (mm or degrees), ``sigmas`` the same in robust standard deviations;
+    those of a whole line of marks that is off do not stand out beside one another, and may have ``sigmas`` of LIMIT.
     ``shift`` is the number of marks (along warp, weft) by which its label seems wrong, None where it does not.
     """
 
@@ -63,6 +65,7 @@ def find_outliers(
         size = float(np.linalg.norm(off[k]))
         line = int(measurement.row[rows[k]])
         found.append(Outlier(int(rows[k]), line, "position", size, float(sigmas[k]), shift))
+    found = _with_lines(found, net, measurement, matched)
     if measurement.shear is not None:
         rows = rows[np.isfinite(measurement.shear[rows])]
         places = np.column_stack([matched.u, matched.v])[rows]
@@ -72,6 +75,18 @@ def find_outliers(
             line = int(measurement.row[rows[k]])
             found.append(Outlier(int(rows[k]), line, "shear", abs(float(off[k, 0])), float(sigmas[k])))
     return tuple(sorted(found, key=lambda outlier: (outlier.line, outlier.kind)))
+
+
+def _with_lines(found: list[Outlier], net: Net, measurement: Measurement, matched: Matched) -> list[Outlier]:
+    """The outliers with all marks of whole lines that are labelled a mark off."""
+    lines, sigmas = wrong_lines(net, measurement), {one.row: one.sigmas for one in found}
+    others = [one for one in found if one.row not in lines]
+    wrong = [
+        Outlier(row, int(measurement.row[row]), "position", off, sigmas.get(row, LIMIT), shift)
+        for row, (shift, off) in lines.items()
+        if matched.used[row]
+    ]
+    return [*others, *wrong]
 
 
 def stand_out(places: np.ndarray, values: np.ndarray, sigma: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:

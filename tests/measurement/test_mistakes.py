@@ -75,6 +75,31 @@ def test_a_label_that_is_off_by_marks_is_recognised(case, shift):
     assert [(o.row, o.shift) for o in found] == [(row, (-shift[0], -shift[1]))]
 
 
+@pytest.mark.parametrize(("fixed", "along", "way"), [("v", "u", 1), ("v", "u", -1), ("u", "v", 1)])
+def test_a_whole_line_of_marks_labelled_one_off_is_named_and_set_apart(case, fixed, along, way):
+    net, m = case
+    line = np.round(getattr(m, fixed)) == 32.0
+    c = compare_net(net, replace(m, **{along: getattr(m, along) + 16.0 * way * line}), sigma_xyz=SIGMA)
+    predicted = line & c.used
+    assert {o.row for o in c.outliers if o.kind == "position"} == set(np.flatnonzero(predicted).tolist())
+    assert predicted.sum() > 8
+    fit = {"u": (-way, 0), "v": (0, -way)}[along]
+    said = [w for w in c.warnings if "seem" in w]
+    assert said == [
+        f"the {predicted.sum()} marks with {fixed} = 32 mm: all labels of this line seem to be off; they fit "
+        f"{fit[0]:+d} along u and {fit[1]:+d} along v (in marks)"
+    ]
+    assert c.scores.position.robust_rms < 1.0
+
+
+@pytest.mark.parametrize("wrong", [None, 32.0, -48.0])
+def test_a_line_is_told_from_a_misfit_of_nearly_a_mark(wrong):
+    surface, m, laid = measured("steering")  # off by up to 13 mm of the 16 between marks
+    line = np.round(m.v) == (np.nan if wrong is None else wrong)
+    c = gd.compare(surface, replace(m, u=m.u + 16.0 * line), **laid)
+    assert {o.row for o in c.outliers if o.kind == "position"} == set(np.flatnonzero(line & c.used).tolist())
+
+
 def test_good_labels_are_not_doubted(case):
     assert check_labels(*case) == ()
 
