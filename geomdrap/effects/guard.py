@@ -9,17 +9,15 @@ from collections.abc import Callable
 from typing import Any
 
 from geomdrap.errors import GeomdrapError, PluginError, interrupt_within
-from geomdrap.fishnet import Effect, Fabric, Net
-from geomdrap.fishnet.shift import Shift
-from geomdrap.surface import Surface
+from geomdrap.fishnet import Effect
 
-GIVES: dict[str, type] = {"on_surface": Surface, "on_placement": Shift, "on_fabric": Fabric, "on_net": Net}
-"""The methods at which an effect acts, and what each must return."""
+STAGES = ("on_surface", "on_placement", "on_fabric", "on_net")
+"""The methods at which an effect acts."""
 
 
 def guard(effect: type[Effect], place: str) -> None:
     """Let the methods that a class of effects has of its own raise PluginError, naming ``place``, where they fail."""
-    for name in ("__init__", *GIVES):
+    for name in ("__init__", *STAGES):
         if name in vars(effect):
             setattr(effect, name, _guarded(vars(effect)[name], name, place))
 
@@ -38,8 +36,8 @@ def _guarded(method: Callable[..., Any], name: str, place: str) -> Callable[...,
             raise PluginError(
                 f"{place}: effect {self.title()} failed in {where}: {type(error).__name__}: {error}"
             ) from error
-        wanted = GIVES.get(name)
-        if wanted is not None and not isinstance(result, wanted):
+        wanted = _given_by(name)
+        if not isinstance(result, wanted):
             raise PluginError(
                 f"{place}: effect {self.title()} returned {_told(result)} from {name}; it must return the "
                 f"{wanted.__name__} (see samples/my_effect.py)"
@@ -47,6 +45,16 @@ def _guarded(method: Callable[..., Any], name: str, place: str) -> Callable[...,
         return result
 
     return call
+
+
+def _given_by(name: str) -> type:
+    """What a method must return."""
+    from geomdrap.fishnet import Fabric, Net
+    from geomdrap.fishnet.shift import Shift
+    from geomdrap.surface import Surface
+
+    gives = {"on_surface": Surface, "on_placement": Shift, "on_fabric": Fabric, "on_net": Net}
+    return gives.get(name, type(None))
 
 
 def _line(error: Exception, method: Callable[..., Any]) -> str:
