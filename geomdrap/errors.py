@@ -23,6 +23,14 @@ class EffectError(GeomdrapError):
     """An effect is unknown, its parameters are not what it takes, or it cannot act on this part."""
 
 
+class PluginError(Exception):
+    """An effect of the user's own fails or returns what it must not.
+
+    No GeomdrapError: a search passes over models that cannot be draped, but not over mistakes in a program. The
+    command line prints it in one line and exits with code 2 all the same.
+    """
+
+
 class SweepError(GeomdrapError):
     """The cases of a sweep cannot be read, or cannot be run where they should."""
 

@@ -91,6 +91,8 @@ def _effects(wanted: str, rng: np.random.Generator) -> list[str]:
     for name in names:
         if name != "placement" and name not in HIDDEN:
             raise GeomdrapError(f"there is no blind effect '{name}'; choose one of {', '.join(KINDS_OF_SET)}")
+        if names.count(name) > 1:
+            raise GeomdrapError(f"blind effect '{wanted}' names {name} more than once; name it once")
     return names
 
 
@@ -151,6 +153,8 @@ def _affected(
         if taken:
             raise GeomdrapError(f"{name} does not go together with {' and '.join(n for n in names if n != name)}")
         recipe = replace(recipe, **change)
+    if recipe.ball and recipe.offset:  # each makes a surface of the tool, and a ply lies on one
+        raise GeomdrapError("thickness does not go together with bridging; hide one of them")
     return named, recipe
 
 

@@ -14,6 +14,8 @@ RIGHT, AMONG, UNEXPLAINED, MISSED, FALSE_ALARM, PARTLY, WRONG = (
     "partly",
     "wrong",
 )
+INTERVAL = 1.96
+"""Standard deviations on either side of a value that make its 95 % interval."""
 GOOD = (RIGHT, AMONG)
 """Grades that count as right."""
 
@@ -43,7 +45,8 @@ def grade(answer: str, verdict: str, candidates: list[str] | tuple[str, ...] = (
 def parameters(truth: Mapping[str, Any], diagnosis: Mapping[str, Any]) -> list[dict[str, Any]]:
     """True and found parameters, a row each: effect, parameter, unit, true, found, sigma, off (in sigmas).
 
-    found and sigma are None where the diagnosis does not give them.
+    ``outside``: the true value is not in the 95 % interval of the one found; ``wrong_sign``: it is of the other sign.
+    All that follows from found and sigma is None where the diagnosis does not give them.
     """
     fitted = {one["name"]: one.get("parameters", {}) for one in diagnosis.get("effects", ())}
     rows = []
@@ -53,5 +56,8 @@ def parameters(truth: Mapping[str, Any], diagnosis: Mapping[str, Any]) -> list[d
             value, sigma = entry.get("value"), entry.get("sigma")
             off = (value - true) / sigma if value is not None and sigma else None
             row = {"effect": effect, "parameter": name, "unit": entry.get("unit", ""), "true": true}
-            rows.append({**row, "found": value, "sigma": sigma, "off": off})
+            seen = {"found": value, "sigma": sigma, "off": off, "outside": None, "wrong_sign": None}
+            if off is not None:
+                seen.update({"outside": abs(off) > INTERVAL, "wrong_sign": value * true < 0.0})
+            rows.append({**row, **seen})
     return rows

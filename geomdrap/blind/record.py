@@ -1,11 +1,12 @@
 """The record of a blind set: the verdict, written before the truth is shown, then both side by side.
 
-``solved.json`` holds the seal that the verdict was given for and when; ``revealed.json`` the grade. A set that has
-been revealed takes no verdict any more.
+``solved.json`` holds the seal that the verdict was given for, when, and a hash of itself; ``revealed.json`` holds the
+grade. A set that has been revealed takes no verdict any more.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Mapping
 from datetime import UTC, datetime
@@ -39,6 +40,7 @@ def write_solved(folder: Path, diagnosis: Mapping[str, Any]) -> dict[str, Any]:
         "confidence": diagnosis.get("confidence"),
         "diagnosis": dict(diagnosis),
     }
+    record["digest"] = _digest(record)
     _write(folder / SOLVED, record)
     return record
 
@@ -47,7 +49,8 @@ def reveal(folder: Path, anyway: bool = False) -> dict[str, Any]:
     """Check the seal, show the truth and grade the verdict; written to revealed.json.
 
     GeomdrapError if the seal is broken or the verdict was given for another one, and, unless ``anyway``, if there is
-    no verdict, or if a file that was solved is not the one that was sealed (``changed``): ``grade`` is None then.
+    no verdict, if it was ``edited`` afterwards, or if a file that was solved is not the one that was sealed
+    (``changed``): ``grade`` is None then. ``changed_since`` names files that have changed since they were solved.
     """
     truth = unseal(folder)
     solved = _read_solved(folder)
@@ -58,13 +61,19 @@ def reveal(folder: Path, anyway: bool = False) -> dict[str, Any]:
             f"{folder / changed[0]} was not the file that was sealed when the set was solved, so the verdict proves "
             "nothing; put it back and solve the set again, or reveal it --anyway"
         )
+    edited = solved is not None and solved.get("digest") != _digest(solved)
+    if edited and not anyway:
+        raise GeomdrapError(
+            f"{folder / SOLVED} was edited after it was written, so the verdict proves nothing; solve the set again, "
+            "or reveal it --anyway"
+        )
     if solved is None and not anyway:
         raise GeomdrapError(f"{folder} is not solved yet; run geomdrap blind solve first, or reveal it --anyway")
     result: dict[str, Any] = {"schema": "geomdrap.blind-reveal/1", "seal": read_seal(folder), "truth": truth}
     result.update({"revealed_at": _now(), "verdict": None, "candidates": [], "grade": None, "right": None})
-    result["changed"] = changed
+    result.update({"changed": changed, "edited": edited, "changed_since": _changed_since(folder, seen)})
     result["parameters"] = parameters(truth, solved["diagnosis"] if solved else {})
-    if solved is not None and not changed:
+    if solved is not None and not changed and not edited:
         told = grade(truth["answer"], solved["verdict"], solved["candidates"])
         found = {key: solved[key] for key in ("verdict", "candidates", "confidence", "solved_at")}
         result.update({**found, "grade": told, "right": told in GOOD})
@@ -85,6 +94,18 @@ def _read_solved(folder: Path) -> dict[str, Any] | None:
     if seal != read_seal(folder):
         raise GeomdrapError(f"{path} was written for another seal; solve the set again")
     return solved
+
+
+def _digest(record: Mapping[str, Any]) -> str:
+    """SHA-256 of a record but for its own; as the seal it guards against accidents."""
+    held = {key: value for key, value in record.items() if key != "digest"}
+    return hashlib.sha256(json.dumps(held, sort_keys=True).encode()).hexdigest()
+
+
+def _changed_since(folder: Path, seen: Mapping[str, str]) -> list[str]:
+    """Files that are no longer what they were when the set was solved."""
+    now = hashes(folder)
+    return [name for name, then in seen.items() if now.get(name) != then]
 
 
 def _now() -> str:

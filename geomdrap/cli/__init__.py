@@ -45,5 +45,7 @@ def cli() -> None:
     Exit codes:
       0  done
       1  done but incomplete (drape --strict), or a change was found (diff)
-      2  bad input or usage
+      2  bad input
+      3  a bug in geomdrap
+      130  interrupted (Ctrl-C)
     """

@@ -149,11 +149,17 @@ def _lines(result: dict[str, Any]) -> list[str]:
     lines = [f"seal {result['seal']} holds", f"hidden  {hidden}"]
     if result["changed"]:
         lines.append(f"changed {', '.join(result['changed'])}: not what was sealed, so nothing is graded")
+    if result["edited"]:
+        lines.append("edited  solved.json: not what solving wrote, so nothing is graded")
+    if result["changed_since"]:
+        lines.append(
+            f"since   {', '.join(result['changed_since'])} changed after solving; the verdict is on what was sealed"
+        )
     if result["grade"] is not None:
         rivals = f" ({', '.join(result['candidates'])})" if result["verdict"] == "ambiguous" else ""
         lines += [f"found   {result['verdict']}{rivals}", f"grade   {result['grade']}"]
     for row in result["parameters"]:
-        lines.append(f"  {row['parameter']:16} true {row['true']:.4g}, {_found(row)}")
+        lines.append(f"  {row['parameter']:16} true {row['true']:.4g}, {_found(row)}{_mark(row)}")
     if truth["placement"]:
         off = "du {du:.2f} mm, dv {dv:.2f} mm, dangle {dangle:.2f} deg".format(**truth["placement"])
         lines.append(f"  placement        true {off} from where setup.toml has it")
@@ -169,3 +175,9 @@ def _found(row: dict[str, Any]) -> str:
     if row["sigma"] is None:
         return "not seen"
     return f"found {row['found']:.4g} ± {1.96 * row['sigma']:.2g} {row['unit']}".rstrip() + " (95 %)"
+
+
+def _mark(row: dict[str, Any]) -> str:
+    """What is wrong with a value that was found."""
+    wrong = [words for key, words in (("outside", "outside it"), ("wrong_sign", "of the other sign")) if row[key]]
+    return f": the true value is {' and '.join(wrong)}" if wrong else ""

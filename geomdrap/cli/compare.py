@@ -75,7 +75,7 @@ def compare(
       geomdrap compare part.stl dic.txt --columns x=X,y=Y,z=Z,shear=Gamma --unit-measured m --json
     """
     import geomdrap as gd
-    from geomdrap.cli.acting import effects_of
+    from geomdrap.cli.acting import blaming, effects_of
     from geomdrap.cli.compare_summary import summary
     from geomdrap.cli.measured import read_asked
     from geomdrap.cli.messages import print_json, say
@@ -92,7 +92,8 @@ def compare(
         ready = read_asked(part, measured, model=model, **asked)
         announce_compilation(quiet)
         progress.step("Comparing")
-        result = gd.compare(ready.surface, ready.measurement, **ready.laid, effects=effects, smooth=not facets)
+        with blaming(model, ready.taken):
+            result = gd.compare(ready.surface, ready.measurement, **ready.laid, effects=effects, smooth=not facets)
         progress.step("Writing")
         files = write_comparison(result, folder, outputs)
     say(result.warnings, (*ready.notes, *result.notes), quiet)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from geomdrap.forming.further import Advice
 
 UNLIKE = 0.3
-"""Share of the readings' size that a fit may leave before it is no description of the test."""
+"""Share of the readings that a fit may leave before it is no description of the test."""
 HELPS = 0.8
 """Share of a sigma below which a further test has to bring it to be worth a word."""
 
@@ -23,7 +23,7 @@ def warnings_of(name: str, found: CouponFit) -> list[str]:
     said += [
         f"{name}: the fit leaves {100.0 * share:.0f} % of the {column}: this is not the test that was measured; "
         "check its settings (angle, length, width, speed) and the units of the table"
-        for column, share in known.scatter.items()
+        for column, share in _left(found).items()
         if share > UNLIKE
     ]
     if known.resized:
@@ -35,6 +35,21 @@ def warnings_of(name: str, found: CouponFit) -> list[str]:
     said += [f"{name}: {a} and {b} are not told apart (correlation {c:.2f})" for a, b, c in known.confounded]
     said += [f"{name}: {one} is not shown by these readings" for one in known.loose]
     return said + _advised(name, found)
+
+
+def _left(found: CouponFit) -> dict[str, float]:
+    """Share of the readings that the fit leaves, by column: of each force, and of the shear as a whole.
+
+    Readings of shear count by what a camera errs by (see `identify.scales`), which is no share of their size.
+    """
+    import numpy as np
+
+    left = {c: share for c, share in found.identified.scatter.items() if c.startswith("force")}
+    for curve in found.curves:
+        if "shear" in curve.measured:
+            size = float(np.sqrt(np.nanmean(curve.measured["shear"] ** 2)))
+            left["shear"] = max(left.get("shear", 0.0), curve.rms["shear"] / size)
+    return left
 
 
 def _advised(name: str, found: CouponFit) -> list[str]:
@@ -87,9 +102,7 @@ def summary_of(fits: Mapping[str, CouponFit], verdict: CurveVerdict | None) -> l
 
 
 def _residual(curve: FittedCurve) -> str:
-    rms = ", ".join(
-        f"{c.replace('_', ' ')} {v:.3g} {'deg' if c == 'shear' else 'N'}" for c, v in curve.rms.items()
-    )
+    rms = ", ".join(f"{c.replace('_', ' ')} {v:.3g} {'deg' if c == 'shear' else 'N'}" for c, v in curve.rms.items())
     return f"residual {rms} (rms, {len(curve.displacement)} readings)"
 
 

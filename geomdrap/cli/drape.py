@@ -108,7 +108,7 @@ def drape(
       geomdrap drape hood.stl --angle 45 --roll-width 600 --seam-overlap 20
       geomdrap drape hood.stl --angle 45 --onto hood_fe.inp --ply-thickness 0.3
     """
-    from geomdrap.cli.acting import said_of_model
+    from geomdrap.cli.acting import blaming, said_of_model
     from geomdrap.cli.messages import of_an_earlier_run, print_json, say
     from geomdrap.cli.progress import Progress, announce_compilation
     from geomdrap.cli.summary import summary
@@ -132,7 +132,7 @@ def drape(
     meant = _layup_of_model(asked["model"], context)
     asked.update(meant)
     mesh, outputs = fe_mesh_of(onto, outputs)
-    with Progress(quiet) as progress:
+    with Progress(quiet) as progress, blaming(asked["model"], list(meant)):
         result = compute(progress, lambda: announce_compilation(quiet), **asked)
         progress.step("Writing")
         command = click.get_current_context().meta.get(COMMAND, "")

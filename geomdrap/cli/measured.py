@@ -18,12 +18,16 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 class Asked(NamedTuple):
-    """A part, a measurement, and how the ply was laid: keywords of `geomdrap.compare`; notes on what was assumed."""
+    """A part, a measurement, and how the ply was laid: keywords of `geomdrap.compare`; notes on what was assumed.
+
+    ``taken`` are the keywords that a model said.
+    """
 
     surface: Surface
     measurement: Measurement
     laid: dict[str, Any]
     notes: tuple[str, ...]
+    taken: tuple[str, ...] = ()
 
 
 def measured_argument(function: F) -> F:
@@ -159,7 +163,7 @@ def read_asked(
     laid, taken, notes = _laid(known, given, meant)
     if taken and model is not None:
         notes = (said_of_model(taken, model), *notes)
-    return Asked(surface, measurement, {**laid, "project": project}, notes)
+    return Asked(surface, measurement, {**laid, "project": project}, notes, tuple(taken))
 
 
 def _laid(

@@ -56,8 +56,8 @@ def likeness(first: Comparison, signature: Comparison) -> float:
     for a, b, noise in (
         (first.vector, signature.vector, first.noise_xyz.typical),
         (first.shear, signature.shear, first.noise_shear.typical),
-        (first.warp_turn, signature.warp_turn, first.noise_turn.typical),
-        (first.weft_turn, signature.weft_turn, first.noise_turn.typical),
+        (first.warp_turn, signature.warp_turn, first.noise_warp.typical),
+        (first.weft_turn, signature.weft_turn, first.noise_weft.typical),
     ):
         if a is not None and b is not None and noise:
             rows = signature.trusted

@@ -13,11 +13,13 @@ from geomdrap.criticism.smooth import SmoothTool, note_on
 from geomdrap.errors import MeasurementError
 from geomdrap.fishnet import drape
 from geomdrap.fishnet.pitch import choose_pitch, coarse_facets
+from geomdrap.measurement.lines import FEWEST
 from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
 from geomdrap.measurement.match import Matched, match
 from geomdrap.measurement.noise import Noise, noise_of, noise_of_directions, repeats_of
 from geomdrap.measurement.outliers import Outlier, find_outliers
 from geomdrap.measurement.plausible import looks_wrong, require_on_part
+from geomdrap.measurement.upright import without_upright
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -95,6 +97,7 @@ def compare_net(
     sigma_direction: float | None = None,
 ) -> Comparison:
     """Compare a net, from whatever model, with measured points; see `compare`."""
+    measurement = without_upright(net.surface, measurement)
     matched = match(net, measurement)
     _require_matches(measurement, matched)
     away = measurement.points - matched.point
@@ -118,7 +121,8 @@ def compare_net(
         weft_turn=weft,
         noise_xyz=noises[0],
         noise_shear=noises[1],
-        noise_turn=noises[2],
+        noise_warp=noises[2],
+        noise_weft=noises[3],
         outliers=outliers,
         trusted=_trusted(matched, outliers),
         places=places_of(net, matched),
@@ -128,7 +132,7 @@ def compare_net(
             *measurement.warnings,
             *said,
             *looks_wrong(net, measurement, matched),
-            *_words(outliers),
+            *_words(measurement, outliers),
         ),
     )
 
@@ -158,8 +162,8 @@ def _noises(
     shear: np.ndarray | None,
     turned: tuple[np.ndarray | None, np.ndarray | None],
     given: tuple[float | None, float | None, float | None],
-) -> tuple[tuple[Noise, Noise, Noise], tuple[str, ...]]:
-    """Noise of coordinates, shear and directions, and warnings about them; ``given`` of the same three."""
+) -> tuple[tuple[Noise, Noise, Noise, Noise], tuple[str, ...]]:
+    """Noise of coordinates, shear, warp and weft, and warnings; ``given`` of coordinates, shear and directions."""
     sigma_xyz, sigma_shear, sigma_direction = given
     group = repeats_of(measurement)
     places = np.column_stack([matched.u, matched.v])
@@ -172,16 +176,13 @@ def _noises(
         of_shear, more = noise_of(
             "sigma_shear", measurement.sigma_shear, sigma_shear, values, group, shear[:, None], places
         )
-    known = [turn[:, None] for turn in turned if turn is not None]
-    of_turn = Noise(None, None)
-    if known:
-        turn = np.hstack(known)
-        column = measurement.sigma_direction
-        of_turn, last = noise_of_directions(
-            column, sigma_direction, of_shear.typical or sigma_shear, turn, group, places
-        )
-        more = (*more, *last)
-    return (xyz, of_shear, of_turn), (*said, *more)
+    column, shear_told = measurement.sigma_direction, of_shear.typical or sigma_shear
+    of_turn = {0: Noise(None, None), 1: Noise(None, None)}
+    for k, turn in enumerate(turned):
+        if turn is not None:
+            of_turn[k], last = noise_of_directions(column, sigma_direction, shear_told, turn[:, None], group, places)
+            more = (*more, *(words for words in last if words not in more))
+    return (xyz, of_shear, of_turn[0], of_turn[1]), (*said, *more)
 
 
 def _trusted(matched: Matched, outliers: tuple[Outlier, ...]) -> np.ndarray:
@@ -190,15 +191,34 @@ def _trusted(matched: Matched, outliers: tuple[Outlier, ...]) -> np.ndarray:
     return trusted
 
 
-def _words(outliers: tuple[Outlier, ...]) -> tuple[str, ...]:
+def _words(measurement: Measurement, outliers: tuple[Outlier, ...]) -> tuple[str, ...]:
     """Sentences on the outliers: how many, and which labels seem wrong."""
     out = []
     if outliers:
         lines = ", ".join(str(line) for line in sorted({outlier.line for outlier in outliers})[:8])
         more = ", …" if len({outlier.line for outlier in outliers}) > 8 else ""
         out.append(f"{len(outliers)} values stand out from their neighbours (lines {lines}{more}) and are set apart")
-    for outlier in [outlier for outlier in outliers if outlier.shift is not None][:8]:
+    told, left = _words_on_lines(measurement, [one for one in outliers if one.shift is not None])
+    for outlier in left[:8]:
         a, b = outlier.shift or (0, 0)
         where = f"{a:+d} along u and {b:+d} along v"
-        out.append(f"line {outlier.line}: the label seems to be off; the mark fits {where} (in marks)")
-    return tuple(out)
+        told.append(f"line {outlier.line}: the label seems to be off; the mark fits {where} (in marks)")
+    return (*out, *told)
+
+
+def _words_on_lines(measurement: Measurement, shifted: list[Outlier]) -> tuple[list[str], list[Outlier]]:
+    """A sentence for each line of marks that are off alike, and the outliers of no such line."""
+    told, left = [], shifted
+    for name, labels, shifts in (("v", measurement.v, {(1, 0), (-1, 0)}), ("u", measurement.u, {(0, 1), (0, -1)})):
+        if labels is None:
+            continue
+        for shift, level in sorted({(one.shift, float(labels[one.row])) for one in left if one.shift in shifts}):
+            own = [one for one in left if one.shift == shift and labels[one.row] == level]
+            if len(own) >= FEWEST and shift is not None:
+                where = f"{shift[0]:+d} along u and {shift[1]:+d} along v"
+                told.append(
+                    f"the {len(own)} marks with {name} = {level:g} mm: all labels of this line seem to be off; they "
+                    f"fit {where} (in marks)"
+                )
+                left = [one for one in left if one not in own]
+    return told, left

@@ -26,6 +26,8 @@ No whole number, so that rounding does not decide on marks of a grid."""
 TIGHT = 0.2
 """Of the part's diagonal: radii of curvature below this are worth a word."""
 MOST = 5
+PLAIN = 0.02
+"""mm: where components at right angles would come to another size, the angle between the yarns is said."""
 FAR_FROM_POINTS = 2.5
 """Spacings of the points: area further from all of them was not measured."""
 LEAST_GAP = 0.01
@@ -37,8 +39,9 @@ class Region:
     """A region of large residuals: ``name`` in words, ``position`` (3,) mm and ``u``, ``v`` mm of its worst point.
 
     ``n`` points; ``along_warp``, ``along_weft``, ``normal`` mm, ``shear``, ``warp_turn``, ``weft_turn`` degrees: mean
-    residuals; ``size`` mm the length of the mean residual vector; ``score`` the peak in standard deviations of the
-    noise, or of the usual residual where the noise is not known.
+    residuals, None where not measured, as along the yarns without fabric coordinates; ``size`` mm the length of the
+    vector with these components along yarns ``yarn_angle`` degrees apart, oblique as in `Comparison`; ``score`` the
+    peak in standard deviations of the noise, or of the usual residual where the noise is not known.
     """
 
     name: str
@@ -47,9 +50,10 @@ class Region:
     v: float
     n: int
     size: float
-    along_warp: float
-    along_weft: float
+    along_warp: float | None
+    along_weft: float | None
     normal: float
+    yarn_angle: float
     shear: float | None
     warp_turn: float | None
     weft_turn: float | None
@@ -91,8 +95,8 @@ def _in_sigmas(comparison: Comparison) -> list[np.ndarray]:
     kinds = [(comparison.vector, comparison.noise_xyz.sigma)]
     if comparison.shear is not None:
         kinds.append((comparison.shear[:, None], comparison.noise_shear.sigma))
-    turns = [turn for turn in (comparison.warp_turn, comparison.weft_turn) if turn is not None]
-    kinds += [(turn[:, None], comparison.noise_turn.sigma) for turn in turns]
+    turns = ((comparison.warp_turn, comparison.noise_warp), (comparison.weft_turn, comparison.noise_weft))
+    kinds += [(turn[:, None], noise.sigma) for turn, noise in turns if turn is not None]
     return [values / (_usual(values) if sigma is None else sigma[:, None]) for values, sigma in kinds]
 
 
@@ -129,17 +133,20 @@ def _region(comparison: Comparison, rows: np.ndarray, peak: int, score: float) -
         None if values is None or np.isnan(values[rows]).all() else float(np.nanmean(values[rows]))
         for values in (comparison.shear, comparison.warp_turn, comparison.weft_turn)
     )
-    along = parts.mean(axis=0)
+    a, b, normal = parts.mean(axis=0).tolist()
+    cosine = float(np.einsum("ij,ij->i", matched.warp[rows], matched.weft[rows]).mean())
+    labelled = comparison.measurement.labelled
     return Region(
         name=name_of_place(comparison, peak),
         position=(x, y, z),
         u=float(matched.u[peak]),
         v=float(matched.v[peak]),
         n=len(rows),
-        size=float(np.linalg.norm(comparison.vector[rows].mean(axis=0))),
-        along_warp=float(along[0]),
-        along_weft=float(along[1]),
-        normal=float(along[2]),
+        size=float(np.sqrt(max(a * a + b * b + 2.0 * a * b * cosine + normal * normal, 0.0))),
+        along_warp=a if labelled else None,
+        along_weft=b if labelled else None,
+        normal=normal,
+        yarn_angle=float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))),
         shear=shear,
         warp_turn=warp,
         weft_turn=weft,
@@ -150,9 +157,11 @@ def _region(comparison: Comparison, rows: np.ndarray, peak: int, score: float) -
 def region_words(region: Region) -> str:
     """A region in one line: place, residual, shear."""
     at = ", ".join(f"{round(x) + 0:d}" for x in region.position)
-    parts = (region.along_warp, region.along_weft, region.normal)
-    numbers = [f"{round(part, 2) + 0.0:+.2f}" for part in parts]  # + 0.0 turns −0.00 into 0.00
-    along = f"{numbers[0]} warp, {numbers[1]} weft, {numbers[2]} normal"
+    parts = {"warp": region.along_warp, "weft": region.along_weft, "normal": region.normal}
+    known = {name: round(part, 2) + 0.0 for name, part in parts.items() if part is not None}  # + 0.0: no −0.00
+    along = ", ".join(f"{part:+.2f} {name}" for name, part in known.items())
+    if abs(region.size - float(np.linalg.norm(list(known.values())))) > PLAIN:
+        along += f"; yarns {region.yarn_angle:.0f}° apart"
     angles = {"shear": region.shear, "warp": region.warp_turn, "weft": region.weft_turn}
     more = [f"; {name} {round(angle, 1) + 0.0:+.1f}°" for name, angle in angles.items() if angle is not None]
     return f"{region.name}: {region.size:.2f} mm ({along}){''.join(more)}; {region.n} points about ({at})"

@@ -53,8 +53,8 @@ def scores_of(comparison: Comparison) -> Scores:
         None if values is None else _score(comparison, values[:, None], noise, values[:, None])
         for values, noise in (
             (comparison.shear, comparison.noise_shear),
-            (comparison.warp_turn, comparison.noise_turn),
-            (comparison.weft_turn, comparison.noise_turn),
+            (comparison.warp_turn, comparison.noise_warp),
+            (comparison.weft_turn, comparison.noise_weft),
         )
     )
     known = [score for score in (position, shear, warp, weft) if score is not None and score.chi2 is not None]

@@ -29,7 +29,8 @@ class Comparison:
     along warp, weft and normal, oblique where the fabric is sheared: ``vector`` = warp · parts[0] + weft · parts[1] +
     normal · parts[2]. ``shear`` (n,) degrees or None; ``warp_turn``, ``weft_turn`` (n,) degrees, counter-clockwise
     about the normal, -90 to 90, or None. ``trusted`` (n,) are the rows with a prediction and without an outlier. The
-    noises are per coordinate (mm), of shear and of directions (degrees). ``places`` says where the rows lie.
+    noises are per coordinate (mm), of shear and of the directions of warp and weft (degrees). ``places`` says where
+    the rows lie.
     """
 
     net: Net
@@ -42,7 +43,8 @@ class Comparison:
     weft_turn: np.ndarray | None
     noise_xyz: Noise
     noise_shear: Noise
-    noise_turn: Noise
+    noise_warp: Noise
+    noise_weft: Noise
     outliers: tuple[Outlier, ...]
     trusted: np.ndarray
     places: Places

@@ -16,6 +16,7 @@ from geomdrap.measurement.match import Matched, match
 from geomdrap.measurement.noise import REPEATS, RESIDUAL, Noise, noise_of, noise_of_directions, repeats_of
 from geomdrap.measurement.outliers import find_outliers
 from geomdrap.measurement.plausible import looks_wrong, require_on_part
+from geomdrap.measurement.upright import without_upright
 
 if TYPE_CHECKING:
     from geomdrap.measurement import Measurement
@@ -45,6 +46,7 @@ def prepare(
     of directions, where these do not say it, from that of the shear. Raises MeasurementError where nothing can be
     compared, or points at fewer than ``FEWEST_PLACES`` places.
     """
+    measurement = without_upright(surface, measurement)
     warnings = [*measurement.warnings, *require_on_part(surface, measurement)]
     notes = [*note_on(surface)]
     measurement = thinned(measurement, notes)
@@ -78,7 +80,8 @@ def prepare(
     mask = np.isfinite(values) & np.isfinite(table) & np.isfinite(at).all(axis=1)[:, None]
     _require_places(measurement, at, mask)
     given = (sigma_xyz, sigma_shear, sigma_direction)
-    sigma, more = _noise(measurement, channels, values, values - table, at, given)
+    sigma, more, doubts = _noise(measurement, channels, values, values - table, at, given)
+    warnings += doubts
     mask &= ~spoilt(channels, mask.shape, find_outliers(net, measurement, found, *_by_kind(channels, sigma)))
     if not mask.any():
         raise MeasurementError(f"{measurement.source}: every point stands out from its neighbours; check the table")
@@ -144,30 +147,38 @@ def _noise(
     residual: np.ndarray,
     at: np.ndarray,
     given: tuple[float | None, float | None, float | None],
-) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Noise (n, c) of every value, and notes on it; ``given`` for positions, shear and directions.
+) -> tuple[np.ndarray, tuple[str, ...], tuple[str, ...]]:
+    """Noise (n, c) of every value, notes and warnings; ``given`` for positions, shear and directions.
 
     Raises MeasurementError where there is no way to know it.
     """
     sigma = np.full(values.shape, np.nan)
     repeats = repeats_of(measurement)
     notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     columns = (measurement.sigma_xyz, measurement.sigma_shear, measurement.sigma_direction)
     shear = given[1]
-    for kind, column, told in zip(OPTIONS, columns, given, strict=True):
-        own = [c for c, name in enumerate(channels) if NOT_POSITION.get(name, "position") == kind]
-        if not own:
-            continue
+    for kind, own in _alike(channels):
+        k = list(OPTIONS).index(kind)
         if kind == "direction":
-            noise, more = noise_of_directions(column, told, shear, residual[:, own], repeats, at)
+            noise, more = noise_of_directions(columns[k], given[k], shear, residual[:, own], repeats, at)
         else:
-            noise, more = noise_of(kind, column, told, values[:, own], repeats, residual[:, own], at)
+            name = OPTIONS[kind].removeprefix("--").replace("-", "_")
+            noise, more = noise_of(name, columns[k], given[k], values[:, own], repeats, residual[:, own], at)
         sigma[:, own] = _known(noise, kind, measurement)[:, None]
         shear = noise.typical if kind == "shear" else shear
         read = noise.source in (REPEATS, RESIDUAL)
-        notes += (f"noise of the {kind} {noise.typical:.2g} {UNITS[kind]}, from {noise.source}",) if read else ()
-        notes += more
-    return sigma, notes
+        what = f"{kind} of the {channels[own[0]]}" if kind == "direction" else kind
+        notes += (f"noise of the {what} {noise.typical:.2g} {UNITS[kind]}, from {noise.source}",) if read else ()
+        warnings += tuple(words for words in more if words not in warnings)
+    return sigma, notes, warnings
+
+
+def _alike(channels: tuple[str, ...]) -> list[tuple[str, list[int]]]:
+    """Kinds of channels that are of one noise, with the channels' numbers: positions, shear, warp, weft."""
+    places = [k for k, name in enumerate(channels) if name not in NOT_POSITION]
+    others = [(NOT_POSITION[name], [k]) for k, name in enumerate(channels) if name in NOT_POSITION]
+    return [*([("position", places)] if places else []), *others]
 
 
 def _known(noise: Noise, kind: str, measurement: Measurement) -> np.ndarray:

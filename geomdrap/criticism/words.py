@@ -116,8 +116,9 @@ def trends(experiment: Experiment, model: Fitted) -> list[str]:
 
     net = experiment.draped(model.model.built(model.values))
     comparison = compare_net(net, experiment.measurement, **experiment.noise_told())
+    names = {place: words.partition(",")[0] for place, words in AGAINST.items()}
     return [
-        f"the {t.kind} residual {'grows' if t.rho > 0 else 'falls'} with {AGAINST[t.against]} (rho {t.rho:.2f})"
+        f"the {t.kind} residual {'grows' if t.rho > 0 else 'falls'} with {names[t.against]} (rho {t.rho:.2f})"
         for t in comparison.trends
         if t.rho is not None and t.p is not None and t.p < 0.01
     ]

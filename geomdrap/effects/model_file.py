@@ -120,6 +120,9 @@ def _effect_of(entry: Mapping[str, Any], path: str | Path) -> Effect:
     values = {key: value for key, value in entry.items() if key != "name"}
     if not isinstance(entry.get("name"), str):
         raise EffectError(f"model {path}: an [[effect]] has no name")
+    for key, value in values.items():
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise EffectError(f"model {path}: {key} of {entry['name']} must be a number, not {value!r}")
     try:
         return asked(entry["name"], values)
     except EffectError as error:

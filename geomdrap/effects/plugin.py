@@ -7,6 +7,7 @@ import importlib.util
 import sys
 from pathlib import Path
 
+from geomdrap.effects.guard import guard
 from geomdrap.effects.registry import register
 from geomdrap.errors import EffectError
 from geomdrap.fishnet import Effect
@@ -15,7 +16,8 @@ from geomdrap.fishnet import Effect
 def load_plugin(path: str | Path) -> tuple[str, ...]:
     """Run a Python file and register every effect with a name that it defines; their names.
 
-    Raises EffectError where the file cannot be read or run, or has no such effect.
+    Raises EffectError where the file cannot be read or run, or has no such effect. Where the methods of these effects
+    fail later on, they raise PluginError.
     """
     file = Path(path)
     if not file.is_file():
@@ -35,4 +37,6 @@ def load_plugin(path: str | Path) -> tuple[str, ...]:
     named = [effect for effect in own if effect.name]
     if not named:
         raise EffectError(f"plugin {file} has no effect: it needs a subclass of geomdrap.Effect with a name")
+    for effect in own:
+        guard(effect, f"plugin {file.name}")
     return tuple(register(effect).name for effect in named)

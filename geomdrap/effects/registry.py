@@ -63,6 +63,8 @@ def _check(effect: object, place: str, known: dict[str, type[Effect]]) -> None:
     """Raise EffectError for what is no effect, has no name, or has that of another."""
     if not (isinstance(effect, type) and issubclass(effect, Effect) and effect.name):
         raise EffectError(f"{place} is no subclass of geomdrap.Effect with a name; give it one: name = 'my-effect'")
+    if not (isinstance(effect.parameters, tuple) and all(isinstance(p, Parameter) for p in effect.parameters)):
+        raise EffectError(f"{place}: parameters must be a tuple of geomdrap.Parameter, as in samples/my_effect.py")
     if known.get(effect.name, effect) is not effect:
         raise EffectError(f"{place}: there is an effect {effect.name} already; choose another name")
 
@@ -88,7 +90,8 @@ def find(name: str) -> type[Effect]:
     if name not in known:
         near = get_close_matches(name, known, 1, 0.7)
         meant = f" (is {near[0]} meant?)" if near else ""
-        raise EffectError(f"there is no effect {name!r}{meant}; the effects are {', '.join(known)}")
+        own = "" if near else "; one of your own comes with its file (--plugin, or gd.effects.load_plugin)"
+        raise EffectError(f"there is no effect {name!r}{meant}; the effects are {', '.join(known)}{own}")
     return known[name]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -97,14 +97,20 @@ def _position(comparison: Comparison) -> dict[str, Any] | None:
         return None
     parts = comparison.parts[comparison.used]
     rms = np.sqrt(np.mean(parts**2, axis=0))
-    bias = dict(zip(("warp", "weft", "normal"), score.pop("bias"), strict=True)) if score["bias"] else None
-    kind = "vector" if comparison.measurement.labelled else "normal distance"
+    labelled, bias = comparison.measurement.labelled, score.pop("bias")
+    kind = "vector" if labelled else "normal distance"
     return {
         **score,
         "kind": kind,
-        "bias": bias,
-        "rms_along": dict(zip(("warp", "weft", "normal"), rms, strict=True)),
+        "bias": _by_yarn(bias, labelled) if bias else None,
+        "rms_along": _by_yarn(rms, labelled),
     }
+
+
+def _by_yarn(values: Sequence[float], labelled: bool) -> dict[str, float | None]:
+    """Components by name; those along the yarns are not measured without fabric coordinates."""
+    named = zip(("warp", "weft", "normal"), values, strict=True)
+    return {name: value if labelled or name == "normal" else None for name, value in named}
 
 
 def _directions(comparison: Comparison) -> dict[str, Any] | None:

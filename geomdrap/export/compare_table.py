@@ -42,7 +42,8 @@ def columns_of(comparison: Comparison) -> dict[str, np.ndarray]:
     columns |= {f"predicted_{axis}": values for axis, values in zip("xyz", matched.point.T, strict=True)}
     columns |= {f"residual_{axis}": values for axis, values in zip("xyz", comparison.vector.T, strict=True)}
     names = ("along_warp", "along_weft", "normal")
-    columns |= dict(zip(names, comparison.parts.T, strict=True))
+    parts = dict(zip(names, comparison.parts.T, strict=True))
+    columns |= {name: values for name, values in parts.items() if measurement.labelled or name == "normal"}
     columns["predicted_shear"] = matched.shear
     optional = {
         "shear": measurement.shear,

@@ -34,6 +34,9 @@ COLUMNS = {
 TOGETHER = (("x", "y", "z"), ("u", "v"), ("i", "j"), ("warp_x", "warp_y", "warp_z"), ("weft_x", "weft_y", "weft_z"))
 """Columns that say nothing alone."""
 
+ANGLES = ("shear", "sigma_shear", "sigma_direction")
+"""Columns in degrees."""
+
 LENGTHS = ("x", "y", "z", "u", "v", "sigma_xyz")
 """Columns that --unit-measured applies to."""
 
@@ -110,7 +113,7 @@ def _require_groups(table: Table, place: Mapping[str, int]) -> None:
 
 
 def _check_units(source: str, heading: Mapping[str, str], unit: str) -> None:
-    """A length whose heading says another unit is refused: it would be wrong by a factor, in silence."""
+    """A length or angle whose heading says another unit is refused: it would be wrong by a factor, in silence."""
     for name in LENGTHS:
         found = re.search(r"[\[(]\s*(mm|cm|m|in|inch)\s*[\])]\s*$", heading.get(name, ""), flags=re.IGNORECASE)
         said = found[1].lower().replace("inch", "in") if found else unit
@@ -118,6 +121,13 @@ def _check_units(source: str, heading: Mapping[str, str], unit: str) -> None:
             raise MeasurementError(
                 f"{source}: the heading '{heading[name]}' says {said}, but lengths are read as {unit}: use "
                 f"--unit-measured {said}"
+            )
+    for name in ANGLES:
+        found = re.search(r"[\[(]\s*(m?rad|radians?|gon|grad)\s*[\])]\s*$", heading.get(name, ""), re.IGNORECASE)
+        if found:
+            raise MeasurementError(
+                f"{source}: the heading '{heading[name]}' says {found[1]}, but angles are read as degrees: convert "
+                "the column"
             )
 
 

@@ -78,7 +78,7 @@ def deviations(places: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.n
         off = np.linalg.norm(around - basis @ plane, axis=2)
         spread = np.median(off, axis=1, keepdims=True) * MAD_TO_SIGMA / np.sqrt(width)
         reach = TUNING * np.sqrt(width) * np.maximum(spread, ROUNDING * float(np.ptp(values)) + 1e-300)
-        weight = np.maximum(1.0 - (off / reach) ** 2, 0.0) ** 2 + 1e-6
+        weight = (1.0 - np.minimum(off / reach, 1.0) ** 2) ** 2 + 1e-6
     plane, gram = _fit(basis, around, weight)
     leverage = np.linalg.inv(gram)[:, 0, 0]
     return values - plane[:, 0], np.sqrt(1.0 + np.clip(leverage, 0.0, 10.0))

@@ -9,6 +9,7 @@ import numpy as np
 
 from geomdrap.errors import MeasurementError
 from geomdrap.measurement.local import deviations, robust_sigma
+from geomdrap.measurement.outliers import LIMIT, stand_out
 
 if TYPE_CHECKING:
     from geomdrap.measurement.measurement import Measurement
@@ -17,6 +18,10 @@ LEAST_REPEATS = 5
 """Degrees of freedom of repeats from which a noise is estimated."""
 DISAGREE = 1.5
 """Factor between the noise given and the one that repeats show from which it is worth a warning."""
+TOO_LARGE, LEAST_NEIGHBOURS = 3.0, 20
+"""Factor between the noise given and what neighbours differ by, from so many points on, that chance does not reach.
+
+Neighbours differ by noise and by structure, so that only a noise that is too large is certain from them."""
 
 DIGITS = 1e-9
 """Of the values: repeats that scatter less are copies."""
@@ -26,6 +31,7 @@ ROUNDING = 1e-6
 COLUMN, GIVEN, REPEATS = "columns of the table", "given", "replicates"
 RESIDUAL = "neighbour differences of the residual"
 SHEAR = "noise of the shear over √2"
+UNITS = {"sigma_xyz": " mm", "sigma_shear": "°", "sigma_direction": "°"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,22 +59,24 @@ def noise_of(
 ) -> tuple[Noise, tuple[str, ...]]:
     """Noise of values (n, k), from the first of: column, given, repeats, neighbour differences; and warnings.
 
+    ``name`` is that of the column, and of the option in Python (``sigma_xyz``), for messages.
     ``column`` (n,) may hold NaN, which the next source fills. ``group`` (n,) numbers the repeats of one mark;
     ``residual`` (n, k) with NaN where there is no prediction, at ``places`` (n, 2). ``otherwise`` is a noise and
     its source for where none of these says it. Raises MeasurementError for a given noise that is not above 0.
     """
     require_above_zero(name, given)
-    repeats, freedom = pooled(values, group)
+    repeats, freedom = pooled(values, group, _ordinary(residual, places))
     if not repeats > DIGITS * float(np.nanmax(np.abs(values), initial=0.0)):
         freedom = 0  # copies of a row are no repeats
-    fallback, source = _fallback(given, repeats, freedom, residual, places)
+    scatter = _scatter(residual, places)
+    fallback, source = _fallback(given, repeats, freedom, residual, scatter)
     if fallback is None and otherwise is not None:
         fallback, source = otherwise
     sigma, source = _filled(column, fallback, source, len(values))
     if sigma is None:
         return Noise(None, None), ()
     noise = Noise(sigma, source)
-    return noise, _disagreement(name, noise, repeats, freedom)
+    return noise, _disagreement(name, noise, repeats, freedom) or _too_large(name, noise, scatter)
 
 
 def noise_of_directions(
@@ -86,10 +94,18 @@ def noise_of_directions(
     """
     require_above_zero("sigma_shear", shear)
     otherwise = None if shear is None else (shear / float(np.sqrt(2.0)), SHEAR)
+    turn = _unwrapped(turn)
     noise, said = noise_of("sigma_direction", column, given, turn, group, turn, places, otherwise)
     if otherwise is not None and noise.source is not None and noise.source.endswith(SHEAR):
         said = (*said, f"the noise of the directions, {otherwise[0]:.3g}°, is the {SHEAR}: nothing else says it")
     return noise, said
+
+
+def _unwrapped(turn: np.ndarray) -> np.ndarray:
+    """Angles (n, k), degrees, of directions without a head within 90 degrees of their mean, column by column."""
+    twice = np.exp(2j * np.radians(turn))
+    mean = np.degrees(np.angle(np.nansum(twice, axis=0))) / 2.0
+    return np.asarray(mean + 90.0 - (mean + 90.0 - turn) % 180.0)
 
 
 def require_above_zero(name: str, sigma: float | None) -> None:
@@ -98,11 +114,13 @@ def require_above_zero(name: str, sigma: float | None) -> None:
         raise MeasurementError(f"{name} is a standard deviation and must be above 0, not {sigma:g}")
 
 
-def pooled(values: np.ndarray, group: np.ndarray | None) -> tuple[float, int]:
-    """Standard deviation within the groups (n,) of values (n, k), and its degrees of freedom."""
+def pooled(values: np.ndarray, group: np.ndarray | None, rows: np.ndarray | None = None) -> tuple[float, int]:
+    """Standard deviation within groups (n,) of values (n, k), and its degrees of freedom; of some ``rows`` only."""
     if group is None:
         return float("nan"), 0
     known = np.isfinite(values).all(axis=1)
+    if rows is not None:
+        known &= rows
     values, (_, group) = values[known], np.unique(group[known], return_inverse=True)
     count = np.bincount(group)
     total = sum(_within(values[:, k], group, count) for k in range(values.shape[1]))
@@ -125,18 +143,35 @@ def repeats_of(measurement: Measurement) -> np.ndarray | None:
     return group if len(np.unique(group)) < len(group) else None
 
 
+def _ordinary(residual: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Rows (n,) bool whose residual (n, k) does not stand out from its neighbours: a slip is no noise of repeats."""
+    known = np.isfinite(residual).all(axis=1) & np.isfinite(places).all(axis=1)
+    ordinary = np.ones(len(residual), bool)
+    if known.any():
+        ordinary[known] = stand_out(places[known], residual[known], None)[1] <= LIMIT
+    return ordinary
+
+
+def _scatter(residual: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """What each residual (n, k) is off its neighbours by, on the scale of its noise; NaN where that is not known."""
+    known = np.isfinite(residual).all(axis=1) & np.isfinite(places).all(axis=1)
+    out = np.full(residual.shape, np.nan)
+    off, factor = deviations(places[known], residual[known])
+    out[known] = off / factor[:, None]
+    return out
+
+
 def _fallback(
-    given: float | None, repeats: float, freedom: int, residual: np.ndarray, places: np.ndarray
+    given: float | None, repeats: float, freedom: int, residual: np.ndarray, scatter: np.ndarray
 ) -> tuple[float | None, str | None]:
     if given is not None:
         return given, GIVEN
     if freedom >= LEAST_REPEATS:
         return repeats, REPEATS
-    known = np.isfinite(residual).all(axis=1) & np.isfinite(places).all(axis=1)
-    if known.sum() < 8:
+    sigma = robust_sigma(scatter)
+    known = np.isfinite(scatter).all(axis=1)
+    if not known.any():
         return None, None
-    off, factor = deviations(places[known], residual[known])
-    sigma = robust_sigma(off / factor[:, None])
     size = float(np.sqrt(np.mean(residual[known] ** 2)))
     return (sigma, RESIDUAL) if sigma > ROUNDING * size else (None, None)
 
@@ -168,4 +203,23 @@ def _disagreement(name: str, noise: Noise, repeats: float, freedom: int) -> tupl
     return (
         f"the replicates scatter by {repeats:.3g}, {word} than the noise of {said:.3g} that is given for {name}: "
         "check which of the two is right",
+    )
+
+
+def _too_large(name: str, noise: Noise, scatter: np.ndarray) -> tuple[str, ...]:
+    """A warning where neighbours (n, k) differ by far less than the noise that was given."""
+    said, source = noise.typical, noise.source or ""
+    if noise.sigma is None or said is None or not source.startswith((GIVEN, COLUMN)):
+        return ()
+    share = robust_sigma(scatter / noise.sigma[:, None])
+    if np.isfinite(scatter).all(axis=1).sum() < LEAST_NEIGHBOURS or not share * TOO_LARGE < 1.0:
+        return ()
+    unit = UNITS.get(name, "")
+    where, what = f"--{name.replace('_', '-')} or {name} of the set-up", "leave it out"
+    if source.startswith(COLUMN):
+        where, what = f"the column {name}", "take the column out"
+    return (
+        f"the noise of {said:.3g}{unit} that is given ({where}) is far too large: neighbouring points differ by "
+        f"noise of {share * said:.2g}{unit} at most; with it little can be found missing: correct it, or {what}, "
+        "and the noise is read from the data",
     )

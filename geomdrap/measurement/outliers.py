@@ -1,4 +1,4 @@
-"""Single points that do not go with their neighbours: slips of the instrument, and labels off by a mark or two."""
+"""Points that do not go with their neighbours: slips of the instrument, and labels off by a mark or two."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.measurement.lines import wrong_lines
 from geomdrap.measurement.local import deviations, neighbours, quantile_of_size, robust_sigma
 from geomdrap.measurement.marks import mark_spacing
 
@@ -33,6 +34,7 @@ class Outlier:
     """A point that stands out: ``row`` its number in the measurement, ``line`` in the file; position or shear.
 
     ``size`` is what it is off its neighbours by (mm or degrees), ``sigmas`` the same in robust standard deviations;
+    those of a whole line of marks that is off do not stand out beside one another, and may have ``sigmas`` of LIMIT.
     ``shift`` is the number of marks (along warp, weft) by which its label seems wrong, None where it does not.
     """
 
@@ -57,24 +59,37 @@ def find_outliers(
     if not measurement.labelled:
         residual = np.einsum("ij,ij->i", residual, matched.normal[rows])[:, None]
     found = []
-    off, sigmas = _stand_out(places, residual, None if sigma_xyz is None else sigma_xyz[rows])
+    off, sigmas = stand_out(places, residual, None if sigma_xyz is None else sigma_xyz[rows])
     for k in np.flatnonzero(sigmas > LIMIT).tolist():
         shift = _label_shift(net, measurement, int(rows[k]), residual[k] - off[k])
         size = float(np.linalg.norm(off[k]))
         line = int(measurement.row[rows[k]])
         found.append(Outlier(int(rows[k]), line, "position", size, float(sigmas[k]), shift))
+    found = _with_lines(found, net, measurement, matched)
     if measurement.shear is not None:
         rows = rows[np.isfinite(measurement.shear[rows])]
         places = np.column_stack([matched.u, matched.v])[rows]
         residual = (measurement.shear - matched.shear)[rows][:, None]
-        off, sigmas = _stand_out(places, residual, None if sigma_shear is None else sigma_shear[rows])
+        off, sigmas = stand_out(places, residual, None if sigma_shear is None else sigma_shear[rows])
         for k in np.flatnonzero(sigmas > LIMIT).tolist():
             line = int(measurement.row[rows[k]])
             found.append(Outlier(int(rows[k]), line, "shear", abs(float(off[k, 0])), float(sigmas[k])))
     return tuple(sorted(found, key=lambda outlier: (outlier.line, outlier.kind)))
 
 
-def _stand_out(places: np.ndarray, values: np.ndarray, sigma: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+def _with_lines(found: list[Outlier], net: Net, measurement: Measurement, matched: Matched) -> list[Outlier]:
+    """The outliers with all marks of whole lines that are labelled a mark off."""
+    lines, sigmas = wrong_lines(net, measurement), {one.row: one.sigmas for one in found}
+    others = [one for one in found if one.row not in lines]
+    wrong = [
+        Outlier(row, int(measurement.row[row]), "position", off, sigmas.get(row, LIMIT), shift)
+        for row, (shift, off) in lines.items()
+        if matched.used[row]
+    ]
+    return [*others, *wrong]
+
+
+def stand_out(places: np.ndarray, values: np.ndarray, sigma: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
     """Deviations (n, k) from the neighbours, and their size (n,) in robust standard deviations.
 
     The scale is the largest of: the noise given, what is usual on the whole part, and what is usual nearby (a steep

@@ -8,6 +8,7 @@ import numpy as np
 
 from geomdrap.errors import MeasurementError
 from geomdrap.measurement.marks import mark_spacing
+from geomdrap.measurement.plausible_yarns import check_directions
 
 if TYPE_CHECKING:
     from geomdrap.fishnet import Net
@@ -51,6 +52,8 @@ OTHER_UNITS = (
 
 ANTI, ALIKE = -0.5, 0.7
 """Correlations with the predicted shear: of angles with the other sign, and of such in another unit."""
+UNSIGNED = 0.4
+"""Share of the misfit that is left where shear of the other sign loses it: then it was measured without."""
 FEWEST, CERTAIN = 10, 4.0
 """Angles from which on a correlation says something, and the standard deviations from chance that it is to be."""
 
@@ -101,8 +104,9 @@ def _labels_agree(measurement: Measurement, factor: float) -> bool:
 
 
 def looks_wrong(net: Net, measurement: Measurement, found: Matched) -> tuple[str, ...]:
-    """Warnings where labels or shear angles are probably others than the table says."""
-    return (*check_labels(net, measurement), *check_shear(measurement.shear, found.shear, measurement.source))
+    """Warnings where labels, directions or shear angles are probably others than the table says."""
+    shear = check_shear(measurement.shear, found.shear, measurement.source)
+    return (*check_labels(net, measurement), *check_directions(measurement, found), *shear)
 
 
 def check_labels(net: Net, measurement: Measurement) -> tuple[str, ...]:
@@ -147,9 +151,25 @@ def check_shear(measured: np.ndarray | None, predicted: np.ndarray, source: str)
             f"{source}: {LOOKS_WRONG} the shear has the other sign: it goes against what is predicted (correlation "
             f"{alike:.2f}); positive is where the angle between warp and weft becomes less than 90 degrees",
         )
+    if _has_no_sign(a, b):
+        never = "negative" if a.max() > 0.0 else "positive"
+        return (
+            f"{source}: {LOOKS_WRONG} the shear has no sign: it is never {never}, and goes with the size of what is "
+            "predicted, not with its sign; positive is where the angle between warp and weft becomes less than 90 "
+            "degrees",
+        )
     if alike > ALIKE and 0.3 < ratio * 180.0 / np.pi < 3.0:
         return (f"{source}: {LOOKS_WRONG} the shear is in radians: it is {ratio:.3f} times what is predicted",)
     return ()
+
+
+def _has_no_sign(measured: np.ndarray, predicted: np.ndarray) -> bool:
+    """Whether shear angles are all of one sign, and those predicted (n,) of the other are as large without theirs."""
+    if measured.min() < 0.0 < measured.max():
+        return False
+    against = predicted * np.sign(measured.mean()) < 0.0
+    a, b = np.abs(measured[against]), np.abs(predicted[against])
+    return bool(against.sum() >= FEWEST and np.median(np.abs(a - b)) < UNSIGNED * np.median(a + b))
 
 
 def _other_counts(step: tuple[float | None, float | None]) -> list[tuple[str, np.ndarray]]:

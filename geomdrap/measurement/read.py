@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from geomdrap.errors import MeasurementError
-from geomdrap.measurement.columns import COLUMNS, LENGTHS, Chosen, choose_columns
+from geomdrap.measurement.columns import ANGLES, COLUMNS, LENGTHS, Chosen, choose_columns
 from geomdrap.measurement.measurement import Measurement
-from geomdrap.measurement.table import Table, number_of, read_table
+from geomdrap.measurement.table import Table, is_open, number_of, read_table
 
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 SIGMAS = ("sigma_xyz", "sigma_shear", "sigma_direction")
 OPTIONAL = ("shear", *SIGMAS, "warp_x", "warp_y", "warp_z", "weft_x", "weft_y", "weft_z")
-"""Quantities that may be open (an empty cell, or nan) in some rows."""
+"""Quantities that may be open (an empty cell, nan, -, n/a) in some rows."""
 
 
 def _unused(heading: str) -> str:
@@ -72,7 +72,7 @@ def read_measurement(
 def _without_lost(table: Table, chosen: Chosen) -> tuple[Table, tuple[str, ...]]:
     """The table without rows that have no position at all: marks that were lost. How many is said."""
     places = [chosen.place[name] for name in "xyz"]
-    kept = [k for k, cells in enumerate(table.rows) if any(cells[p] for p in places)]
+    kept = [k for k, cells in enumerate(table.rows) if not all(is_open(cells[p]) for p in places)]
     lost = len(table.rows) - len(kept)
     if not kept:
         raise MeasurementError(f"{table.source}: x, y and z are empty in all {lost} rows: nothing is measured in it")
@@ -91,7 +91,7 @@ def _numbers(table: Table, chosen: Chosen, name: str) -> np.ndarray:
     values = np.empty(len(table.rows))
     for k, cells in enumerate(table.rows):
         text = cells[place]
-        value = number_of(text, comma)
+        value = number_of(text.removesuffix("°").rstrip() if name in ANGLES else text, comma)
         if value is None:
             _refuse(table, k, chosen.heading[name], f"'{text[:40]}' is not a number")
         elif math.isinf(value):
@@ -115,7 +115,8 @@ def _fabric_coordinates(
 ) -> tuple[np.ndarray | None, np.ndarray | None, tuple[str, ...]]:
     """u, v (n,) mm of the marks, from their columns or from the marks' numbers, and what there is to say."""
     if "u" in cells:
-        return cells["u"], cells["v"], ()
+        told = f"{source}: the spacing of the marks (--mark-spacing) is not used, as the table has u and v"
+        return cells["u"], cells["v"], (told,) if spacing is not None else ()
     if "i" not in cells:
         if spacing is not None:
             raise MeasurementError(

@@ -13,6 +13,9 @@ from geomdrap.errors import MeasurementError
 SEPARATORS = {";": "semicolon", "\t": "tab", ",": "comma"}
 """In the order in which they are looked for: a comma may be a decimal sign where there are semicolons."""
 
+OPEN = ("", "-", "–", "—", "n/a", "#n/a", "na")
+"""What people write where nothing was measured, in lower case."""
+
 CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 
@@ -99,9 +102,14 @@ def _require_header(header: tuple[str, ...], source: str, number: int) -> None:
         )
 
 
+def is_open(text: str) -> bool:
+    """Whether a cell says that nothing was measured."""
+    return text.lower() in OPEN
+
+
 def number_of(text: str, decimal_comma: bool) -> float | None:
-    """A number as people write it; NaN for an empty cell, None for text."""
-    if not text:
+    """A number as people write it; NaN for an open cell, None for text."""
+    if is_open(text):
         return math.nan
     if decimal_comma and text.count(",") == 1 and "." not in text:
         text = text.replace(",", ".")

@@ -140,6 +140,9 @@ def test_two_effects_can_be_hidden_at_once(tmp_path):
         ({"points": 3}, "points"),
         ({"scatter": -1.0}, "scatter"),
         ({"size": 9.0}, "size"),
+        ({"effect": "slip+slip"}, "'slip.slip' names slip more than once; name it once"),
+        ({"effect": "bridging+thickness"}, "thickness does not go together with bridging"),
+        ({"effect": "thickness+bridging"}, "thickness does not go together with bridging"),
         ({"effect": "shear-stiffness+yarn-bending"}, "yarn-bending does not go together with shear-stiffness"),
     ],
 )

@@ -95,6 +95,33 @@ def test_a_verdict_on_another_table_than_the_sealed_one_does_not_count(tmp_path)
     assert reveal(tmp_path)["grade"] == "right"
 
 
+    shown = reveal(tmp_path)
+    assert (shown["changed"], shown["changed_since"], shown["edited"]) == ([], ["measured.csv"], False)
+
+
+def test_a_verdict_that_was_edited_does_not_count(tmp_path):
+    seal(tmp_path, TRUTH)
+    write_solved(tmp_path, {**FOUND, "verdict": "none", "confidence": 0.1 + 0.2})
+    assert reveal(tmp_path)["edited"] is False
+    solved = tmp_path / "solved.json"
+    (tmp_path / "revealed.json").unlink()
+    solved.write_text(solved.read_text().replace('"verdict": "none"', '"verdict": "slip"'))
+    with pytest.raises(GeomdrapError, match=r"solved\.json was edited after it was written"):
+        reveal(tmp_path)
+    shown = reveal(tmp_path, anyway=True)
+    assert (shown["edited"], shown["verdict"], shown["grade"], shown["right"]) == (True, None, None, None)
+
+
+@pytest.mark.parametrize(
+    ("value", "sigma", "outside", "sign"),
+    [(0.8, 0.1, False, False), (1.0, 0.1, True, False), (-0.1, 0.1, True, True), (-0.1, 0.9, False, True), (0.8, None, None, None)],
+)
+def test_values_outside_their_interval_or_of_the_wrong_sign_are_marked(value, sigma, outside, sign):
+    found = {"effects": [{"name": "slip", "parameters": {"coefficient": {"value": value, "sigma": sigma, "unit": ""}}}]}
+    (row,) = parameters(TRUTH, found)
+    assert (row["outside"], row["wrong_sign"]) == (outside, sign)
+
+
 def test_a_verdict_on_a_changed_table_is_shown_anyway_ungraded(tmp_path):
     (tmp_path / "measured.csv").write_text("x,y,z\n1,2,3\n")
     seal(tmp_path, TRUTH)

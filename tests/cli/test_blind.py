@@ -112,3 +112,30 @@ def test_reveal_gives_the_interval_of_what_was_seen_and_no_number_for_the_rest()
     assert _found(row) == "found 2.99 ± 0.02 deg (95 %)"
     assert _found({**row, "sigma": None}) == "not seen"
     assert _found({**row, "found": None, "sigma": None}) == "not fitted"
+
+
+def test_reveal_says_which_values_are_wrong_and_what_has_changed(tmp_path, monkeypatch):
+    import geomdrap as gd
+
+    class Off(Found):
+        def as_dict(self):
+            skew = {"value": -30.0, "sigma": 0.01, "unit": "deg"}
+            return {**super().as_dict(), "effects": [{"name": "weave-skew", "parameters": {"skew": skew}}]}
+
+    run("make", "--effect", "weave-skew", "--seed", 1, "-o", tmp_path)
+    true = unseal(tmp_path)["effect"]["weave-skew"]["skew"]
+    monkeypatch.setattr(gd, "diagnose", lambda surface, measurement, **laid: Off("weave-skew"), raising=False)
+    run("solve", tmp_path)
+    (tmp_path / "measured.csv").write_text("x,y,z\n")
+    code, out, _ = run("reveal", tmp_path)
+    assert code == 0
+    both = " and of the other sign" if true > 0.0 else ""
+    assert f"found -30 ± 0.02 deg (95 %): the true value is outside it{both}" in out
+    assert "since   measured.csv changed after solving" in out
+    solved = tmp_path / "solved.json"
+    solved.write_text(solved.read_text().replace("-30.0", "3.0"))
+    code, _, err = run("reveal", tmp_path)
+    assert code == 2
+    assert "was edited after it was written" in err
+    code, out, _ = run("reveal", tmp_path, "--anyway")
+    assert "edited  solved.json" in out

@@ -79,6 +79,16 @@ def test_options_go_before_the_setup(run, files):
     assert document["shear"]["sigma"] == pytest.approx(0.6)  # still that of the set-up
 
 
+def test_a_noise_that_the_data_contradict_is_questioned_in_text_and_json(run, files):
+    plain = ("compare", "part.obj", "measured.csv", "--setup", "setup.toml", "--outputs", "none", "--json")
+    assert _json(run(*plain))["warnings"] == []
+    result = run(*plain, "--sigma-xyz", "20", "--sigma-shear", "60")
+    xyz, shear = _json(result)["warnings"]
+    assert "the noise of 20 mm that is given (--sigma-xyz" in xyz
+    assert "the noise of 60° that is given (--sigma-shear" in shear
+    assert f"Warning: {xyz}" in result.stderr
+
+
 def test_what_was_not_given_is_said(run, files):
     result = run("compare", "part.obj", "measured.csv", "--outputs", "none")
     assert "origin not given" in result.stderr

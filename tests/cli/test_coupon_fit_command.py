@@ -69,9 +69,23 @@ def test_a_fit_that_describes_nothing_is_warned_of() -> None:
     known = SimpleNamespace(
         converged=True, resized=0, confounded=[], loose=[], scatter={"force": 0.99, "shear": 0.01}
     )
-    said = warnings_of("test", SimpleNamespace(identified=known, rivals=(), advice=()))
+    said = warnings_of("test", SimpleNamespace(identified=known, rivals=(), advice=(), curves=()))
     assert len(said) == 1
     assert "leaves 99 % of the force" in said[0]
+
+
+@pytest.mark.parametrize(("rms", "words"), [(1.22, []), (14.0, ["leaves 47 % of the shear"])])
+def test_what_a_fit_leaves_of_the_shear_is_a_share_of_the_shear(rms: float, words: list[str]) -> None:
+    from types import SimpleNamespace
+
+    from geomdrap.cli.coupon_fit_summary import warnings_of
+
+    # of what a camera errs by, a twentieth of the largest shear, it is ten times that
+    known = SimpleNamespace(converged=True, resized=0, confounded=[], loose=[], scatter={"shear": 0.59})
+    curve = SimpleNamespace(measured={"shear": np.array([30.0, -30.0, np.nan])}, rms={"shear": rms})
+    said = warnings_of("test", SimpleNamespace(identified=known, rivals=(), advice=(), curves=(curve,)))
+    assert len(said) == len(words)
+    assert all(word in text for word, text in zip(words, said, strict=True))
 
 
 @pytest.mark.usefixtures("one_start")

@@ -197,3 +197,26 @@ def test_a_comparison_takes_the_ply_of_a_model_unless_told_otherwise(run, tmp_pa
     )
     assert json.loads(other.stdout)["position"]["rms"] > 2.0
     assert "origin of the ply is that of model.toml" in other.stderr
+
+
+def test_an_effect_given_twice_is_refused(error_of, run, tmp_path):
+    run("sample", "hemisphere", "-o", ".")
+    slip = ("--effect", "slip:coefficient=0.5")
+    plain = ("drape", "hemisphere.stl", "--outputs", "none")
+    said = error_of(*plain, *slip, "--effect", "slip:coefficient=0.2")
+    assert said == "effect slip is given more than once (--effect): give it once, with all its values"
+    (tmp_path / "m.toml").write_text('format = "geomdrap.model/1"\n[[effect]]\nname = "slip"\ncoefficient = 0.2\n')
+    assert "slip is given more than once (--effect and the model m.toml)" in error_of(*plain, *slip, "--model", "m.toml")
+
+
+def test_an_origin_of_a_model_that_lies_off_the_part_is_said_to_be_the_models(error_of, run, tmp_path):
+    run("sample", "hemisphere", "-o", ".")
+    text = 'format = "geomdrap.model/1"\n[layup]\norigin = [0.0, 0.0, 500.0]\nangle = 0.0\n'
+    (tmp_path / "m.toml").write_text(text)
+    (tmp_path / "t.csv").write_text("x,y,z\n0,0,100\n50,0,86.6\n")
+    for command in (("drape", "hemisphere.stl"), ("compare", "hemisphere.stl", "t.csv")):
+        said = error_of(*command, "--model", "m.toml", "--outputs", "none", "-q")
+        assert said.startswith("model m.toml: the origin lies ")
+        assert said.endswith("or give another --origin")
+        own = error_of(*command, "--model", "m.toml", "--outputs", "none", "-q", "--origin", "0,0,600")
+        assert own.startswith("the origin lies")

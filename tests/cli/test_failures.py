@@ -130,3 +130,11 @@ def test_an_interrupt_from_the_keyboard_ends_with_130_and_no_traceback(tmp_path:
     assert "interrupted" in errors
     assert "Traceback" not in errors
     assert not list(tmp_path.iterdir())
+
+
+def test_the_exit_codes_of_the_help_are_those_of_the_readme(run):
+    readme = " ".join((Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8").replace("`", "").split())
+    codes = run("--help").stdout.split("Exit codes:")[1].split("Options:")[0]
+    said = [" ".join(line.split(maxsplit=1)) for line in codes.splitlines() if line.strip()]
+    assert len(said) == 5
+    assert "Exit codes: " + "; ".join(said) in readme

@@ -71,7 +71,8 @@ def test_the_noise_of_directions_may_be_given_or_stand_in_the_table(tmp_path):
     # the pictures of a diagnosis and its words on what is left stand on the same noise
     for d, told in ((first, 0.5), (third, 1.0)):
         for comparison in before_and_after(d):
-            assert (comparison.noise_turn.source, comparison.noise_turn.typical) == ("given", pytest.approx(told))
+            for noise in (comparison.noise_warp, comparison.noise_weft):
+                assert (noise.source, noise.typical) == ("given", pytest.approx(told))
 
 
 def test_compare_and_diagnose_take_the_same_noise_of_directions(tmp_path):
@@ -79,11 +80,12 @@ def test_compare_and_diagnose_take_the_same_noise_of_directions(tmp_path):
     compared = gd.compare(surface, measurement, **told)
     layup = Layup(told["origin"], told["angle"])
     experiment, notes = prepare(surface, measurement, layup, told["sigma_xyz"], told["sigma_shear"])
-    own = np.isin(np.array(experiment.channels)[experiment.channel_of()], ("warp", "weft"))
+    channel = np.array(experiment.channels)[experiment.channel_of()]
     # the nets have other pitches, and with them the residuals whose neighbours are compared
-    assert np.unique(experiment.noise[own]) == pytest.approx(compared.noise_turn.typical, rel=0.05)
-    assert compared.noise_turn.typical == pytest.approx(told["sigma_shear"] / np.sqrt(2.0), rel=0.3)
-    assert compared.noise_turn.source == "neighbour differences of the residual"
+    for name, noise in (("warp", compared.noise_warp), ("weft", compared.noise_weft)):
+        assert np.unique(experiment.noise[channel == name]) == pytest.approx(noise.typical, rel=0.05)
+        assert noise.typical == pytest.approx(told["sigma_shear"] / np.sqrt(2.0), rel=0.3)
+        assert noise.source == "neighbour differences of the residual"
     assert any("noise of the direction" in note and "neighbour" in note for note in notes)
 
 

@@ -10,6 +10,8 @@ from analytic_tools import measured
 
 import geomdrap as gd
 from geomdrap.criticism.compare_regions import region_words, unmeasured, worst_regions
+from geomdrap.export.compare_json import as_dict
+from geomdrap.export.compare_table import columns_of
 
 
 @pytest.fixture(scope="module")
@@ -54,6 +56,36 @@ def test_a_bump_in_the_residual_is_named_by_its_place(quiet, u, v, words):
     assert abs(worst.along_weft) < 0.4
     assert abs(worst.normal) < 0.2
     assert worst.name in region_words(worst)
+
+
+def test_the_size_of_a_region_is_that_of_its_components(quiet):
+    surface, m, laid = quiet
+    there = np.exp(-((m.u - 60.0) ** 2 + (m.v - 60.0) ** 2) / 25.0**2)[:, None]
+    net = gd.drape(surface, laid["origin"], laid["angle"], 8.0)
+    warp, weft = net.directions(m.u, m.v)
+    c = gd.compare(surface, replace(m, points=m.points + there * (6.0 * warp + 2.0 * weft)), **laid)
+    worst = worst_regions(c)[0]
+    a, b, n = worst.along_warp, worst.along_weft, worst.normal
+    assert worst.size**2 == pytest.approx(a**2 + b**2 + n**2 + 2 * a * b * np.cos(np.radians(worst.yarn_angle)))
+    assert abs(90.0 - worst.yarn_angle) > 5.0
+    assert f"normal; yarns {worst.yarn_angle:.0f}° apart)" in region_words(worst)
+
+
+def test_without_labels_only_the_distance_from_the_part_is_told(quiet):
+    surface, m, laid = quiet
+    there = np.exp(-((m.u - 48.0) ** 2 + m.v**2) / 25.0**2)[:, None]
+    net = gd.drape(surface, laid["origin"], laid["angle"], 8.0)
+    normal = np.cross(*net.directions(m.u, m.v))
+    lifted = m.points + 3.0 * there * normal / np.linalg.norm(normal, axis=1, keepdims=True)
+    c = gd.compare(surface, replace(m, points=lifted, u=None, v=None), **laid)
+    worst = worst_regions(c)[0]
+    assert (worst.along_warp, worst.along_weft) == (None, None)
+    assert f"{worst.size:.2f} mm ({worst.normal:+.2f} normal)" in region_words(worst)
+    position = as_dict(c)["position"]
+    for name in ("bias", "rms_along"):
+        assert (position[name]["warp"], position[name]["weft"]) == (None, None)
+        assert position[name]["normal"] is not None
+    assert not {"along_warp", "along_weft"} & set(columns_of(c))
 
 
 def test_the_rim_is_in_the_name_with_its_distance(quiet):

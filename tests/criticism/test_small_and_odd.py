@@ -95,11 +95,20 @@ def test_fewer_than_six_places_are_too_few_for_a_diagnosis_and_their_number_is_s
 @pytest.mark.parametrize("swapped", [False, True])
 def test_swapped_labels_are_a_warning_of_a_diagnosis_and_no_note(net, swapped):
     u, v = np.random.default_rng(2).uniform(-30.0, 30.0, (2, 40))
-    points, _ = net.interpolate(u, v)
+    points = net.interpolate(u, v)[0] + np.random.default_rng(3).normal(0.0, 0.5, (40, 3))
     m = gd.Measurement("marks.csv", points, u=v if swapped else u, v=u if swapped else v)
     experiment, notes = prepare(net.surface, m, Layup("centroid", 20.0), sigma_xyz=0.5)
     assert ["u and v are swapped" in warning for warning in experiment.warnings] == [True] * swapped
     assert not any("swapped" in note for note in notes)
+
+
+@pytest.mark.parametrize("told", [0.5, 20.0])
+def test_a_noise_that_neighbours_contradict_is_a_warning_of_a_diagnosis(net, told):
+    u, v = np.random.default_rng(2).uniform(-30.0, 30.0, (2, 40))
+    points = net.interpolate(u, v)[0] + np.random.default_rng(3).normal(0.0, 0.5, (40, 3))
+    m = gd.Measurement("marks.csv", points, u=u, v=v)
+    warnings = prepare(net.surface, m, Layup("centroid", 20.0), sigma_xyz=told)[0].warnings
+    assert ["--sigma-xyz" in said and "far too large" in said for said in warnings] == [True] * (told == 20.0)
 
 
 def test_an_effect_without_parameters_is_not_tried_and_that_is_said(monkeypatch, net):

@@ -237,6 +237,9 @@ def test_a_model_file_gives_back_what_was_written(tmp_path):
         ('format = "geomdrap.model/1"\n[[effect]]\nname = "slip"\ncoefficient = 2.0', "from 0 to 1"),
         ('format = "geomdrap.model/1"\n[[effect]]\ncoefficient = 0.2', "has no name"),
         ('format = "geomdrap.model/1"\n[[effect]]\nname = "slip"', "does nothing without a value of coefficient"),
+        ('format = "geomdrap.model/1"\n[[effect]]\nname = "slip"\ncoefficient = "0.5"', "must be a number, not '0.5'"),
+        ('format = "geomdrap.model/1"\n[[effect]]\nname = "slip"\ncoefficient = true', "must be a number, not True"),
+        ('format = "geomdrap.model/1"\n[[effect]]\nname = "my-own"\nx = 0.5', r"one of your own comes with its file \(--plugin"),
         ('format = "geomdrap.model/1"\neffect = 3', r"table \[\[effect\]\]"),
     ],
 )

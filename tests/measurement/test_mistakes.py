@@ -9,6 +9,7 @@ import pytest
 from analytic_tools import measured
 
 import geomdrap as gd
+from geomdrap.criticism.compare import compare_net
 from geomdrap.measurement.match import match
 from geomdrap.measurement.outliers import find_outliers
 from geomdrap.measurement.plausible import check_labels, require_on_part
@@ -47,6 +48,22 @@ def test_all_slips_of_ten_sigmas_are_found_and_nothing_else(case, seed):
     assert {o.line for o in found} == {int(m.row[r]) for r in rows}
 
 
+@pytest.mark.parametrize("times", [2, 3])
+def test_the_one_of_repeated_marks_that_is_far_off_is_the_outlier(case, times):
+    net, m = case
+    rows = np.concatenate([np.arange(len(m)), np.repeat([20, 90, 160, 200, 260], times - 1)])
+    table = m.take(rows)
+    rng = np.random.default_rng(0)
+    points = table.points + rng.normal(0.0, 0.1, (len(table), 3)) * (np.arange(len(table)) >= len(m))[:, None]
+    wrong = len(m) + np.arange(0, 5 * (times - 1), times - 1)  # one repeat of each
+    points[wrong, 2] += 80.0
+    for sigma in (None, SIGMA):
+        c = compare_net(net, replace(table, points=points, row=np.arange(len(table))), sigma_xyz=sigma)
+        assert {o.row for o in c.outliers if o.kind == "position"} == set(wrong.tolist())
+        assert c.scores.position.robust_rms < 1.0
+        assert c.noise_xyz.typical < 0.3
+
+
 @pytest.mark.parametrize("shift", [(1, 0), (0, -1), (-1, 1), (2, 0)])
 def test_a_label_that_is_off_by_marks_is_recognised(case, shift):
     net, m = case
@@ -56,6 +73,31 @@ def test_a_label_that_is_off_by_marks_is_recognised(case, shift):
     v[row] += 16.0 * shift[1]
     found = [o for o in _outliers(net, replace(m, u=u, v=v)) if o.kind == "position"]
     assert [(o.row, o.shift) for o in found] == [(row, (-shift[0], -shift[1]))]
+
+
+@pytest.mark.parametrize(("fixed", "along", "way"), [("v", "u", 1), ("v", "u", -1), ("u", "v", 1)])
+def test_a_whole_line_of_marks_labelled_one_off_is_named_and_set_apart(case, fixed, along, way):
+    net, m = case
+    line = np.round(getattr(m, fixed)) == 32.0
+    c = compare_net(net, replace(m, **{along: getattr(m, along) + 16.0 * way * line}), sigma_xyz=SIGMA)
+    predicted = line & c.used
+    assert {o.row for o in c.outliers if o.kind == "position"} == set(np.flatnonzero(predicted).tolist())
+    assert predicted.sum() > 8
+    fit = {"u": (-way, 0), "v": (0, -way)}[along]
+    said = [w for w in c.warnings if "seem" in w]
+    assert said == [
+        f"the {predicted.sum()} marks with {fixed} = 32 mm: all labels of this line seem to be off; they fit "
+        f"{fit[0]:+d} along u and {fit[1]:+d} along v (in marks)"
+    ]
+    assert c.scores.position.robust_rms < 1.0
+
+
+@pytest.mark.parametrize("wrong", [None, 32.0, -48.0])
+def test_a_line_is_told_from_a_misfit_of_nearly_a_mark(wrong):
+    surface, m, laid = measured("steering")  # off by up to 13 mm of the 16 between marks
+    line = np.round(m.v) == (np.nan if wrong is None else wrong)
+    c = gd.compare(surface, replace(m, u=m.u + 16.0 * line), **laid)
+    assert {o.row for o in c.outliers if o.kind == "position"} == set(np.flatnonzero(line & c.used).tolist())
 
 
 def test_good_labels_are_not_doubted(case):

@@ -88,6 +88,42 @@ def test_repeats_that_scatter_more_than_the_noise_given_are_reported():
     assert "less than the noise" in _noise(values=values, given=2.0, group=group)[1][0]
 
 
+@pytest.mark.parametrize("slips", [[400, 403, 407, 410, 414], [401]])
+def test_slips_among_repeats_are_no_noise(slips):
+    places = np.concatenate([_grid()] + [_grid()[:20]])
+    values = np.random.default_rng(0).normal(0.0, 0.2, (420, 3))
+    values[slips, 2] += 80.0
+    group = np.concatenate([np.arange(400), np.arange(20)])
+    noise, said = _noise(values=values, residual=values, places=places, group=group)
+    assert noise.source == "replicates"
+    assert noise.typical == pytest.approx(0.2, rel=0.2)
+    assert said == ()
+    assert _noise(given=0.2, values=values, residual=values, places=places, group=group)[1] == ()
+
+
+def test_a_noise_that_neighbours_contradict_is_questioned():
+    places = _grid()
+    values = np.random.default_rng(0).normal(0.0, 0.2, (400, 3))
+    known = {"values": values, "residual": values, "places": places}
+    (said,) = _noise(given=20.0, **known)[1]
+    for words in ("20 mm", "--sigma-xyz", "set-up", "0.19 mm at most", "leave it out"):
+        assert words in said
+    (said,) = _noise(column=np.full(400, 20.0), **known)[1]
+    assert "the column sigma_xyz" in said
+    assert "take the column out" in said
+    for fair in (0.2, 0.5, 0.01):  # neighbours differ by structure too: that a noise is too small, they do not show
+        assert _noise(given=fair, **known)[1] == ()
+    structure = values + 5.0 * np.sin(places[:, :1] / 5.0)
+    assert _noise(given=3.0, values=structure, residual=structure, places=places)[1] == ()
+
+
+def test_a_right_noise_is_not_questioned_by_chance_even_with_few_points():
+    for seed in range(300):
+        rng = np.random.default_rng(seed)
+        values = rng.normal(0.0, 0.2, (20, 1))
+        assert _noise(given=0.2, values=values, residual=values, places=rng.uniform(0.0, 100.0, (20, 2)))[1] == ()
+
+
 @pytest.mark.parametrize("sigma", [0.0, -1.0, np.nan, np.inf])
 def test_a_noise_that_is_none_is_refused(sigma):
     with pytest.raises(gd.MeasurementError, match="sigma_xyz"):

@@ -24,6 +24,16 @@ def test_shear_of_the_other_sign_or_in_radians_is_noticed(measured, words):
         assert words in said[0] and "table.csv" in said[0]
 
 
+def test_shear_without_a_sign_is_noticed():
+    (said,) = check_shear(np.abs(READ), ANGLES, "table.csv")
+    assert "it looks as if the shear has no sign: it is never negative" in said
+    (said,) = check_shear(-np.abs(READ), ANGLES, "table.csv")
+    assert "never positive" in said
+    one_way = np.abs(ANGLES)  # a ply that shears one way only is no mistake, nor one whose sign is that of the net
+    assert check_shear(np.abs(READ), one_way, "t") == ()
+    assert check_shear(np.abs(np.random.default_rng(2).normal(0.0, 0.6, 40)), ANGLES, "t") == ()
+
+
 def test_too_few_angles_or_equal_ones_say_nothing():
     assert check_shear(-READ[:5], ANGLES[:5], "t") == ()
     assert check_shear(np.zeros(40), ANGLES, "t") == ()

@@ -48,6 +48,19 @@ def test_separators_decimal_commas_case_quotes_and_encodings_make_no_difference(
     np.testing.assert_array_equal(gd.read_measurement(table(content)).points, [[1.5, 2.0, -3.0]])
 
 
+def test_what_people_write_where_nothing_was_measured_is_an_open_cell_and_degrees_may_have_their_sign(table):
+    rows = ["1,2,3,25°", "1,2,3,-", "1,2,3,n/a", "1,2,3,–", "1,2,3,N/A", "-,-,-,5", "1,2,3,-7.5 °"]
+    m = gd.read_measurement(table("x,y,z,shear [deg]\n" + "\n".join(rows) + "\n"))
+    np.testing.assert_array_equal(m.shear, [25.0, *4 * [np.nan], -7.5])
+    assert any("1 rows have no position" in note for note in m.notes)
+
+
+def test_a_spacing_that_is_not_used_as_there_are_labels_is_said(table):
+    path = table("x,y,z,u,v\n1,2,3,4,5\n")
+    assert gd.read_measurement(path).notes == ()
+    assert "--mark-spacing) is not used, as the table has u and v" in gd.read_measurement(path, mark_spacing=(16.0, 16.0)).notes[0]
+
+
 @pytest.mark.parametrize(("unit", "factor"), [("mm", 1.0), ("cm", 10.0), ("m", 1000.0), ("in", 25.4)])
 def test_all_lengths_are_in_the_unit_given(table, unit, factor):
     m = gd.read_measurement(table("x,y,z,u,v,sigma_xyz,shear,sigma_shear\n1,2,3,4,5,6,7,8\n"), unit=unit)
@@ -123,6 +136,10 @@ def test_the_nodes_of_a_drape_can_be_read_as_a_measurement(tmp_path):
         ("x,y,z,warp_x,warp_y,warp_z\n1,2,3,0,0,0\n", ["line 2", "warp_x", "no direction"]),
         ("x,y,z,weft_x,weft_y,weft_z\n1,2,3,1,,0\n", ["line 2", "weft_x", "all three"]),
         ("x [m],y [m],z [m]\n1,2,3\n", ["'x [m]'", "--unit-measured m"]),
+        ("x,y,z,shear [rad]\n1,2,3,0.5\n", ["'shear [rad]'", "says rad", "degrees"]),
+        ("x,y,z,shear,sigma_shear (rad)\n1,2,3,5,0.1\n", ["'sigma_shear (rad)'", "degrees"]),
+        ("x,y,z\n1,-,3\n", ["line 2", "'y'", "there is no number"]),
+        ("x,y,z\n1,25°,3\n", ["line 2", "'y'", "'25°' is not a number"]),
         (b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR", ["points.csv", "not a text table"]),
         (b"\x00" * 100, ["points.csv", "not a text table"]),
     ],
