@@ -23,11 +23,10 @@ class EffectError(GeomdrapError):
     """An effect is unknown, its parameters are not what it takes, or it cannot act on this part."""
 
 
-class PluginError(Exception):
+class PluginError(GeomdrapError):
     """An effect of the user's own fails or returns what it must not.
 
-    No GeomdrapError: a search passes over models that cannot be draped, but not over mistakes in a program. The
-    command line prints it in one line and exits with code 2 all the same.
+    A search passes over models that cannot be draped, but not over mistakes in a program.
     """
 
 

@@ -8,7 +8,7 @@ import traceback
 
 import click
 
-from geomdrap.errors import GeomdrapError, PluginError, interrupt_within
+from geomdrap.errors import GeomdrapError, interrupt_within
 
 BAD_INPUT = 2
 BUG = 3
@@ -35,7 +35,7 @@ def _meaning(error: BaseException) -> tuple[int, str]:
         return INTERRUPTED, str(error.__cause__ or error) or "interrupted; nothing was written"
     if isinstance(error, click.ClickException):
         return BAD_INPUT, error.format_message().rstrip(".") + _where_to_look(error)
-    if isinstance(error, (GeomdrapError, PluginError)):
+    if isinstance(error, GeomdrapError):
         return BAD_INPUT, str(error)
     if isinstance(error, OSError):
         return BAD_INPUT, f"{error.filename}: {error.strerror}" if error.filename else str(error)

@@ -13,7 +13,7 @@ from geomdrap.criticism.fit import FIRST_STEPS, STEPS, Fit, fit, take_slopes
 from geomdrap.criticism.likelihood import is_noise, square_beside
 from geomdrap.criticism.start import LEAST_GAIN, TURNS, Glance, as_meant, glance, is_astray, start_values
 from geomdrap.effects import make
-from geomdrap.errors import GeomdrapError
+from geomdrap.errors import GeomdrapError, PluginError
 
 if TYPE_CHECKING:
     from geomdrap.criticism.experiment import Experiment
@@ -140,6 +140,8 @@ class Predictor:
         if key not in self.kept:
             try:
                 self.kept[key] = self.experiment.predict(self.model.built(values))
+            except PluginError:
+                raise
             except GeomdrapError as error:  # as for a seed moved off the part: nothing is predicted, and it is said
                 self.experiment.refused[self.model.names[-1]] = str(error)
                 self.kept[key] = np.full(len(self.experiment.measured), np.nan)
@@ -150,6 +152,8 @@ class Predictor:
         near, there = (self.model.built(v) for v in (values, values + NEAR * step))
         try:
             change = self.experiment.beside(near, there)
+        except PluginError:
+            raise
         except GeomdrapError:  # the prediction says why
             return None
         return None if change is None else change / NEAR

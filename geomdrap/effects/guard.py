@@ -27,7 +27,7 @@ def _guarded(method: Callable[..., Any], name: str, place: str) -> Callable[...,
     def call(self: Effect, *given: Any, **values: Any) -> Any:
         try:
             result = method(self, *given, **values)
-        except (GeomdrapError, PluginError, MemoryError):
+        except (GeomdrapError, MemoryError):
             raise
         except Exception as error:  # the user's code may raise anything
             if interrupt_within(error) is not None:

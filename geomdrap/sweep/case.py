@@ -6,7 +6,7 @@ import hashlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from geomdrap.errors import GeomdrapError, PluginError, interrupt_within
+from geomdrap.errors import GeomdrapError, interrupt_within
 from geomdrap.fields import evaluate
 from geomdrap.fields.figures import figures
 from geomdrap.fishnet import drape
@@ -53,7 +53,7 @@ class Job:
         try:
             net = self.drape(case)
             return row_of_figures(case.origin, net, figures(net, self.limit_angle))
-        except (GeomdrapError, PluginError) as error:
+        except GeomdrapError as error:
             return failed(case.origin, case.angle, str(error))
         except MemoryError:
             return failed(case.origin, case.angle, "not enough memory; a larger pitch needs less")
