@@ -15,14 +15,14 @@ import numpy as np
 
 from geomdrap.criticism.cleaned import cleaned, outliers_of
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
-from geomdrap.criticism.evidence import Evidence, alike_in_what_they_leave, rivals, says_the_same
+from geomdrap.criticism.ended import WORTH, End, chosen, ended, leaves, left_over
+from geomdrap.criticism.evidence import Evidence, says_the_same
 from geomdrap.criticism.experiment import Experiment, Layup, flatten
-from geomdrap.criticism.final import contenders, final, said_of_coarser, told_apart
+from geomdrap.criticism.final import said_of_coarser
 from geomdrap.criticism.fitted_on import refit
-from geomdrap.criticism.jackknife import widened
-from geomdrap.criticism.leftover import Leftover, leftover
-from geomdrap.criticism.likelihood import Residuals, Scatter
-from geomdrap.criticism.locked import LOCKING, doubted, locks, shear_stops
+from geomdrap.criticism.leftover import Leftover
+from geomdrap.criticism.likelihood import Scatter
+from geomdrap.criticism.locked import locks
 from geomdrap.criticism.model import Fitted, fit_placement, unfitted
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round, judge_of, steps_of, try_effects
@@ -42,8 +42,6 @@ MOST_EFFECTS = 2
 SHIFTED = 0.5  # mm: a seed that lies further off than this is named
 TURNED = 0.4  # degrees: likewise
 CERTAIN = 3.0  # standard deviations of the placement
-WORTH = 0.03  # of the first misfit: what a further effect must explain
-UNEXPLAINED = 0.015  # of the first misfit: what the final model may leave where structure is in it
 
 
 def diagnose(
@@ -127,46 +125,6 @@ def _refining(progress: Progress, passed: int) -> Callable[[str], None]:
     return lambda name: progress(1.0 - 0.5 ** next(told), f"refining {name}")
 
 
-def chosen(rounds: Sequence[Round]) -> str | None:
-    """The effect that the last round adds, None for none: a further one must explain enough of the first misfit."""
-    found = rivals(rounds[-1].evidence)
-    if not found:
-        return None
-    if len(rounds) > 1:
-        first = rounds[0].base.fit.chi2 - len(rounds[0].rows)
-        before = rounds[-1].base
-        after = rounds[-1].trial(found[0])[0]
-        if before.fit.chi2 - after.fit.chi2 < WORTH * first:
-            return None
-    return found[0]
-
-
-def found_by(rounds: Sequence[Round]) -> tuple[list[str], Fitted, Scatter]:
-    """Names of the effects that a search has found, the model with them, and its scatter."""
-    added = [chosen(rounds[: k + 1]) for k in range(len(rounds))]
-    names = [name for name in added if name is not None]
-    if names:
-        return names, *rounds[len(names) - 1].trial(names[-1])
-    return names, rounds[0].base, rounds[0].scatter[0]
-
-
-def leaves(first: Round, model: Fitted, share: float) -> bool:
-    """Whether a model leaves that share of the first misfit.
-
-    A little is what facets, the pitch and other definitions of the same effect make.
-    """
-    noise = first.judge.noise
-    before, after = (float(np.sum((m.fit.residual[first.rows] / noise) ** 2 - 1.0)) for m in (first.base, model))
-    return not model.model.effects or not after < share * before
-
-
-def left_over(experiment: Experiment, model: Fitted, scatter: Scatter) -> Leftover:
-    """What a model leaves."""
-    rows = np.isfinite(model.fit.residual)
-    judge = judge_of(experiment, rows)
-    return leftover(experiment, rows, judge, Residuals(model.fit.residual[rows], model.fit.slopes[rows]), scatter)
-
-
 def conclude(
     experiment: Experiment,
     rounds: Sequence[Round],
@@ -174,34 +132,10 @@ def conclude(
     done: Callable[[str], None] = lambda name: None,
 ) -> Diagnosis:
     """The verdict on a finished search. ``done`` is told the name of each effect that is fitted on."""
-    names, model, scatter = found_by(rounds)
-    meant = experiment
-    alike: tuple[str, ...] = ()
-    ends: dict[str, tuple[Experiment, Fitted]] = {}
-    if names:
-        k = len(names) - 1
-        ends, seen = told_apart(meant, rounds[k], contenders(rounds[k].evidence), done)
-        alike, rounds = tuple(ends), [*rounds[:k], seen, *rounds[k + 1 :]]
-        names, scatter = [*names[:k], alike[0]], seen.trial(alike[0])[1]
-    experiment, model = ends[alike[0]] if alike else final(meant, model, scatter)
-    left = left_over(experiment, model, scatter)
-    # a plateau that the model found does not foretell is no matter of chance: nothing else makes one
-    if locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):
-        alike = (LOCKING,)
-        if names != [LOCKING]:
-            names = [LOCKING]
-            model, scatter = rounds[0].trial(LOCKING)
-            experiment, model = final(meant, model, scatter)
-            left = left_over(experiment, model, scatter)
-    if LOCKING in names:
-        model = doubted(experiment, rounds[0], model)
-    model = widened(experiment, model, scatter)
-    near = {name: widened(*ends[name], rounds[len(names) - 1].trial(name)[1]) for name in alike[1:] if name in ends}
-    unexplained = left.structured and leaves(rounds[0], model, UNEXPLAINED) and names != [LOCKING]
-    if unexplained and len(alike) == 1:
-        others = alike_in_what_they_leave(rounds[len(names) - 1].evidence)
-        alike = others if names[-1] in others else alike
-    verdict, candidates = _verdict(experiment, model, scatter, names, alike, unexplained)
+    end = ended(experiment, rounds, done)
+    names, model, scatter, left, rounds = end.names, end.model, end.scatter, end.left, end.rounds
+    meant, experiment = experiment, end.experiment
+    verdict, candidates = _verdict(end)
     steps = _steps(experiment, rounds, names, model)
     placement = values_of(experiment, model, scatter, "placement")
     return Diagnosis(
@@ -212,7 +146,7 @@ def conclude(
         steps=steps,
         noise_floor=_floor(experiment, scatter),
         placement=placement,
-        tried=tried_of(experiment, rounds, names, model, scatter, near),
+        tried=tried_of(experiment, rounds, names, model, scatter, end.near),
         effects=tuple(model.model.built(model.values)),
         scatter=scatter,
         leftover=left,
@@ -230,22 +164,16 @@ def _failures(experiment: Experiment, rounds: Sequence[Round]) -> tuple[str, ...
     return (*bare, *(f"{n} {what}: {refused[n]}" for n, what in said.items()))
 
 
-def _verdict(
-    experiment: Experiment,
-    model: Fitted,
-    scatter: Scatter,
-    names: Sequence[str],
-    alike: Sequence[str],
-    unexplained: bool,
-) -> tuple[str, tuple[str, ...]]:
+def _verdict(end: End) -> tuple[str, tuple[str, ...]]:
     """Verdict and candidates."""
-    if names and len(alike) > 1:
-        return AMBIGUOUS, (*names[:-1], *alike)
-    if unexplained:
+    names = end.names
+    if names and len(end.alike) > 1:
+        return AMBIGUOUS, (*names[:-1], *end.alike)
+    if end.unexplained:
         return UNKNOWN, tuple(names)
     if names:
         return "+".join(names), tuple(names)
-    if _misplaced(experiment, model, scatter):
+    if _misplaced(end.experiment, end.model, end.scatter):
         return PLACEMENT, ()
     return NONE, ()
 

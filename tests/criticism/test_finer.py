@@ -22,6 +22,7 @@ from geomdrap.criticism.search import Round
 from geomdrap.surface import shapes
 
 diagnose = import_module("geomdrap.criticism.diagnose")  # the package's own name for it is the function
+ended = import_module("geomdrap.criticism.ended")
 last = import_module("geomdrap.criticism.final")
 POINTS = 12
 
@@ -71,8 +72,8 @@ def test_locking_in_place_of_another_costly_effect_is_fitted_on_a_net_of_half_th
     monkeypatch.setattr(last, "refined", record)
     monkeypatch.setattr(last, "doubted_for_facets", lambda _, model: model)
     monkeypatch.setattr(last, "rests", lambda *_: True)
-    monkeypatch.setattr(diagnose, "left_over", lambda *_: SimpleNamespace(structured=True))
-    monkeypatch.setattr(diagnose, "locks", lambda *_: True)
+    monkeypatch.setattr(ended, "left_over", lambda *_: SimpleNamespace(structured=True))
+    monkeypatch.setattr(ended, "locks", lambda *_: True)
     with pytest.raises(StopIteration):
         diagnose.conclude(experiment((1.0, 8.0)), [of], ())
     assert asked == [(("shear-stiffness",), 4.0), (("locking",), 4.0)]

@@ -1,0 +1,111 @@
+"""How a search ends: the model found, fitted to the end, those that explain as much, and what it leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from geomdrap.criticism.evidence import alike_in_what_they_leave, rivals
+from geomdrap.criticism.experiment import Experiment
+from geomdrap.criticism.final import contenders, final, told_apart
+from geomdrap.criticism.jackknife import widened
+from geomdrap.criticism.leftover import Leftover, leftover
+from geomdrap.criticism.likelihood import Residuals, Scatter
+from geomdrap.criticism.locked import LOCKING, doubted, locks, shear_stops
+from geomdrap.criticism.model import Fitted
+from geomdrap.criticism.search import Round, judge_of
+
+WORTH = 0.03  # of the first misfit: what a further effect must explain
+UNEXPLAINED = 0.015  # of the first misfit: what the final model may leave where structure is in it
+
+
+class End(NamedTuple):
+    """The end of a search.
+
+    ``experiment`` with the nets of the ``model``, which has the effects ``names`` and leaves ``left`` under its
+    ``scatter``; ``alike`` are effects that explain as much as the last of these, itself first, and ``near`` models of
+    the others; ``rounds`` as the finer nets see them; ``unexplained``: something is left that needs a cause.
+    """
+
+    experiment: Experiment
+    rounds: Sequence[Round]
+    names: list[str]
+    alike: tuple[str, ...]
+    near: Mapping[str, Fitted]
+    model: Fitted
+    scatter: Scatter
+    left: Leftover
+    unexplained: bool
+
+
+def chosen(rounds: Sequence[Round]) -> str | None:
+    """The effect that the last round adds, None for none: a further one must explain enough of the first misfit."""
+    found = rivals(rounds[-1].evidence)
+    if not found:
+        return None
+    if len(rounds) > 1:
+        first = rounds[0].base.fit.chi2 - len(rounds[0].rows)
+        before = rounds[-1].base
+        after = rounds[-1].trial(found[0])[0]
+        if before.fit.chi2 - after.fit.chi2 < WORTH * first:
+            return None
+    return found[0]
+
+
+def found_by(rounds: Sequence[Round]) -> tuple[list[str], Fitted, Scatter]:
+    """Names of the effects that a search has found, the model with them, and its scatter."""
+    added = [chosen(rounds[: k + 1]) for k in range(len(rounds))]
+    names = [name for name in added if name is not None]
+    if names:
+        return names, *rounds[len(names) - 1].trial(names[-1])
+    return names, rounds[0].base, rounds[0].scatter[0]
+
+
+def leaves(first: Round, model: Fitted, share: float) -> bool:
+    """Whether a model leaves that share of the first misfit.
+
+    A little is what facets, the pitch and other definitions of the same effect make.
+    """
+    noise = first.judge.noise
+    before, after = (float(np.sum((m.fit.residual[first.rows] / noise) ** 2 - 1.0)) for m in (first.base, model))
+    return not model.model.effects or not after < share * before
+
+
+def left_over(experiment: Experiment, model: Fitted, scatter: Scatter) -> Leftover:
+    """What a model leaves."""
+    rows = np.isfinite(model.fit.residual)
+    judge = judge_of(experiment, rows)
+    return leftover(experiment, rows, judge, Residuals(model.fit.residual[rows], model.fit.slopes[rows]), scatter)
+
+
+def ended(meant: Experiment, rounds: Sequence[Round], done: Callable[[str], None]) -> End:
+    """The end of a search, in an experiment as it was ``meant``; ``done`` is told each effect that is fitted on."""
+    names, model, scatter = found_by(rounds)
+    alike: tuple[str, ...] = ()
+    ends: dict[str, tuple[Experiment, Fitted]] = {}
+    if names:
+        k = len(names) - 1
+        ends, seen = told_apart(meant, rounds[k], contenders(rounds[k].evidence), done)
+        alike, rounds = tuple(ends), [*rounds[:k], seen, *rounds[k + 1 :]]
+        names, scatter = [*names[:k], alike[0]], seen.trial(alike[0])[1]
+    experiment, model = ends[alike[0]] if alike else final(meant, model, scatter)
+    left = left_over(experiment, model, scatter)
+    # a plateau that the model found does not foretell is no matter of chance: nothing else makes one
+    if locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):
+        alike = (LOCKING,)
+        if names != [LOCKING]:
+            names = [LOCKING]
+            model, scatter = rounds[0].trial(LOCKING)
+            experiment, model = final(meant, model, scatter)
+            left = left_over(experiment, model, scatter)
+    if LOCKING in names:
+        model = doubted(experiment, rounds[0], model)
+    model = widened(experiment, model, scatter)
+    near = {name: widened(*ends[name], rounds[len(names) - 1].trial(name)[1]) for name in alike[1:] if name in ends}
+    unexplained = left.structured and leaves(rounds[0], model, UNEXPLAINED) and names != [LOCKING]
+    if unexplained and len(alike) == 1:
+        others = alike_in_what_they_leave(rounds[len(names) - 1].evidence)
+        alike = others if names[-1] in others else alike
+    return End(experiment, rounds, names, alike, near, model, scatter, left, unexplained)
