@@ -27,13 +27,16 @@ def refuse_if_revealed(folder: Path) -> None:
         raise GeomdrapError(f"the truth of {folder} has been revealed, so solving it proves nothing; make a new set")
 
 
-def write_solved(folder: Path, diagnosis: Mapping[str, Any]) -> dict[str, Any]:
-    """Write the ``diagnosis`` (schema geomdrap.diagnose/1) as the verdict on the set; gives what was written."""
+def write_solved(folder: Path, diagnosis: Mapping[str, Any], read: Mapping[str, str]) -> dict[str, Any]:
+    """Write the ``diagnosis`` (schema geomdrap.diagnose/1) as the verdict on the set; gives what was written.
+
+    ``read``: the ``hashes`` of its files when they were read.
+    """
     refuse_if_revealed(folder)
     record = {
         "schema": "geomdrap.blind-solved/1",
         "seal": read_seal(folder),
-        "files": hashes(folder),
+        "files": dict(read),
         "solved_at": _now(),
         "verdict": diagnosis["verdict"],
         "candidates": list(diagnosis.get("candidates", ())),
@@ -113,4 +116,6 @@ def _now() -> str:
 
 
 def _write(path: Path, record: Mapping[str, Any]) -> None:
-    path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    half = path.with_name(f".{path.name}")  # a reader sees the old record or the new one
+    half.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    half.replace(path)

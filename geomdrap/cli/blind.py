@@ -90,15 +90,17 @@ def solve(folder: Path, as_json: bool, quiet: bool) -> None:
     """
     import geomdrap as gd
     from geomdrap.blind.record import refuse_if_revealed, write_solved
+    from geomdrap.blind.seal import hashes
     from geomdrap.cli.messages import print_json
     from geomdrap.cli.progress import Progress, announce_compilation
 
     refuse_if_revealed(folder)
     announce_compilation(quiet)
+    read = hashes(folder)
     with Progress(quiet) as progress:
         progress.step("Diagnosing")
         diagnosis = gd.diagnose(**_read(folder), progress=progress.share)
-    record = write_solved(folder, diagnosis.as_dict())
+    record = write_solved(folder, diagnosis.as_dict(), read)
     if as_json:
         print_json(record)
         return

@@ -31,7 +31,9 @@ def key_figures(comparison: Comparison) -> list[tuple[str, str, str]]:
         colour = palette.INK if scores.chi2_per_dof < QUIET else palette.HIGH
         out.append((f"{ratio:.3g} ×", f"the noise, over all\n(χ² per value {scores.chi2_per_dof:.3g})", colour))
     used, n = int(comparison.used.sum()), len(comparison.measurement)
-    words = f"points compared\n{n - used} without prediction"
+    words = f"points compared\n{n - used} without prediction" + (
+        f", {len(set(o.row for o in comparison.outliers))} set apart" if comparison.outliers else ""
+    )
     colour = palette.INK if used >= ENOUGH * n else palette.ALARM
     return [*out[:4], (f"{used} of {n}", words, colour)]
 

@@ -9,7 +9,7 @@ import pytest
 
 from geomdrap.blind import grade, make, parameters, read_seal, unseal
 from geomdrap.blind.record import reveal, write_solved
-from geomdrap.blind.seal import seal
+from geomdrap.blind.seal import hashes, seal
 from geomdrap.errors import GeomdrapError
 
 TRUTH = {"answer": "slip", "effect": {"slip": {"coefficient": 0.7}}, "placement": {}}
@@ -60,12 +60,12 @@ def test_a_set_is_not_revealed_before_it_is_solved_unless_anyway_and_takes_no_ve
     shown = reveal(tmp_path, anyway=True)
     assert (shown["truth"], shown["grade"], shown["right"]) == ({**TRUTH, "files": {}}, None, None)
     with pytest.raises(GeomdrapError, match="revealed"):
-        write_solved(tmp_path, FOUND)
+        write_solved(tmp_path, FOUND, hashes(tmp_path))
 
 
 def test_the_reveal_grades_and_compares_and_says_when_it_was_solved(tmp_path):
     seal(tmp_path, TRUTH)
-    solved = write_solved(tmp_path, FOUND)
+    solved = write_solved(tmp_path, FOUND, hashes(tmp_path))
     shown = reveal(tmp_path)
     assert (shown["verdict"], shown["grade"], shown["right"]) == ("slip", "right", True)
     assert shown["solved_at"] == solved["solved_at"] <= shown["revealed_at"]
@@ -75,7 +75,7 @@ def test_the_reveal_grades_and_compares_and_says_when_it_was_solved(tmp_path):
 
 def test_a_verdict_for_another_seal_does_not_count(tmp_path):
     seal(tmp_path, TRUTH)
-    write_solved(tmp_path, FOUND)
+    write_solved(tmp_path, FOUND, hashes(tmp_path))
     seal(tmp_path, TRUTH)
     with pytest.raises(GeomdrapError, match="another seal"):
         reveal(tmp_path)
@@ -86,14 +86,13 @@ def test_a_verdict_on_another_table_than_the_sealed_one_does_not_count(tmp_path)
     table.write_text("x,y,z\n1,2,3\n")
     seal(tmp_path, TRUTH)
     table.write_text("x,y,z\n1,2,4\n")
-    write_solved(tmp_path, FOUND)
+    write_solved(tmp_path, FOUND, hashes(tmp_path))
     table.write_text("x,y,z\n1,2,3\n")  # putting it back does not help
     with pytest.raises(GeomdrapError, match=r"measured\.csv was not the file that was sealed"):
         reveal(tmp_path)
-    write_solved(tmp_path, FOUND)
+    write_solved(tmp_path, FOUND, hashes(tmp_path))
     table.write_text("x,y,z\n")  # nor does what comes after harm
     assert reveal(tmp_path)["grade"] == "right"
-
 
     shown = reveal(tmp_path)
     assert (shown["changed"], shown["changed_since"], shown["edited"]) == ([], ["measured.csv"], False)
@@ -101,7 +100,7 @@ def test_a_verdict_on_another_table_than_the_sealed_one_does_not_count(tmp_path)
 
 def test_a_verdict_that_was_edited_does_not_count(tmp_path):
     seal(tmp_path, TRUTH)
-    write_solved(tmp_path, {**FOUND, "verdict": "none", "confidence": 0.1 + 0.2})
+    write_solved(tmp_path, {**FOUND, "verdict": "none", "confidence": 0.1 + 0.2}, hashes(tmp_path))
     assert reveal(tmp_path)["edited"] is False
     solved = tmp_path / "solved.json"
     (tmp_path / "revealed.json").unlink()
@@ -114,10 +113,18 @@ def test_a_verdict_that_was_edited_does_not_count(tmp_path):
 
 @pytest.mark.parametrize(
     ("value", "sigma", "outside", "sign"),
-    [(0.8, 0.1, False, False), (1.0, 0.1, True, False), (-0.1, 0.1, True, True), (-0.1, 0.9, False, True), (0.8, None, None, None)],
+    [
+        (0.8, 0.1, False, False),
+        (1.0, 0.1, True, False),
+        (-0.1, 0.1, True, True),
+        (-0.1, 0.9, False, True),
+        (0.8, None, None, None),
+    ],
 )
 def test_values_outside_their_interval_or_of_the_wrong_sign_are_marked(value, sigma, outside, sign):
-    found = {"effects": [{"name": "slip", "parameters": {"coefficient": {"value": value, "sigma": sigma, "unit": ""}}}]}
+    found = {
+        "effects": [{"name": "slip", "parameters": {"coefficient": {"value": value, "sigma": sigma, "unit": ""}}}]
+    }
     (row,) = parameters(TRUTH, found)
     assert (row["outside"], row["wrong_sign"]) == (outside, sign)
 
@@ -126,7 +133,7 @@ def test_a_verdict_on_a_changed_table_is_shown_anyway_ungraded(tmp_path):
     (tmp_path / "measured.csv").write_text("x,y,z\n1,2,3\n")
     seal(tmp_path, TRUTH)
     (tmp_path / "measured.csv").unlink()
-    write_solved(tmp_path, FOUND)
+    write_solved(tmp_path, FOUND, hashes(tmp_path))
     shown = reveal(tmp_path, anyway=True)
     assert (shown["changed"], shown["grade"], shown["right"]) == (["measured.csv"], None, None)
 
