@@ -87,7 +87,7 @@ def told_apart(
     last = replace(last, evidence=_no_better(last.evidence, [name for name in alike if name not in ends]))
     costly = [name for name in ends if make(name).costly]
     if len(ends) < 2 or not costly or any(ends[name][0] is experiment for name in costly):
-        return {name: ends[name] for name in rivals(last.evidence) if name in ends}, last
+        return {name: ends[name] for name in rivals([e for e in last.evidence if e.name in ends])}, last
     rows = np.all([np.isfinite(model.fit.residual) for _, model in ends.values()], axis=0)
     whiten = judge_of(experiment, rows).whiten(last.trial(alike[0])[1])
     square = {name: float((whiten(model.fit.residual[rows]) ** 2).sum()) for name, (_, model) in ends.items()}
@@ -105,7 +105,9 @@ def _no_better(evidence: Sequence[Evidence], names: Sequence[str]) -> tuple[Evid
     """Evidence in which effects are no likelier than what they come to at small values."""
     of = {e.name: e for e in evidence}
     return tuple(
-        replace(e, gain=min([e.gain, *(of[less].gain for less in e.includes)])) if e.name in names else e
+        replace(e, gain=min([e.gain, *(of[less].gain for less in e.includes if less in of)]))
+        if e.name in names
+        else e
         for e in evidence
     )
 

@@ -243,8 +243,15 @@ def add_effect(
         # without positions another valley of the placement, centimetres away, may have taken the effect's place
         there = np.append(as_meant(base), found.values[own])
         again = fit(predict, experiment.measured, whiten, there, model.steps, low, high)
-        found = min(found, again, key=lambda one: one.chi2)
+        found = again if _is_better(whiten, again, found) else found
     return Fitted(model, found)
+
+
+def _is_better(whiten: Whiten, one: Fit, other: Fit) -> bool:
+    """Whether a fit is closer to all that another predicts; what it does not predict itself speaks against it."""
+    both = np.isfinite(one.residual) & np.isfinite(other.residual)
+    squares = [float((whiten(np.where(both, f.residual, 0.0)) ** 2).sum()) for f in (one, other)]
+    return both.sum() == np.isfinite(other.residual).sum() and squares[0] < squares[1]
 
 
 def _not_fitted(model: Model, base: Fitted, seen: Glance) -> Fitted:

@@ -60,7 +60,7 @@ def error_sentence(d: Diagnosis) -> str:
 
 def placement_sentence(d: Diagnosis) -> str | None:
     """Where the ply lies by the final model, if that is not the answer already."""
-    return None if d.verdict == PLACEMENT else f"The ply lies off its place by {_list(d.placement)} (95 %)."
+    return None if d.verdict == PLACEMENT else f"Placement: {_list(d.placement)} (95 %)."
 
 
 def rival_sentence(d: Diagnosis) -> str | None:

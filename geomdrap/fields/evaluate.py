@@ -26,9 +26,7 @@ LEAST_FABRIC = 0.995  # of the draped area: sheared fabric covers less than its 
 LEAST_BARE = 1e-4  # of the part: smaller bare specks are counted in the coverage but not listed
 
 
-def evaluate(
-    net: Net, limit_angle: float | None = None, progress: Callable[[float], None] = lambda _: None
-) -> Drape:
+def evaluate(net: Net, limit_angle: float | None = None, progress: Callable[[float], None] = lambda _: None) -> Drape:
     """Fields, flat pattern, areas, bare regions, statistics and checks of a net.
 
     ``limit_angle`` degrees; the fabric's own if None. ``progress`` is called with the share done, 0 to 1.
@@ -77,14 +75,19 @@ def _tear(net: Net, trimmed: Trimmed) -> tuple[str, ...]:
 def stretch(net: Net) -> float:
     """How much larger than flat the fabric is where its yarns are strained and nothing shears, 1 for most nets.
 
-    A net on which an effect of the user's has acted may be so without saying; the lines between its nodes tell.
+    A net that an effect has grown in the end does not say so; the lines between its nodes tell, which are else a
+    little shorter than the yarns.
     """
-    sides = net.sides
-    if sides is None and any(type(e).on_net is not Effect.on_net for e in net.effects):
-        sides = tuple(np.linalg.norm(np.diff(net.points, axis=axis), axis=2) for axis in (0, 1))
-    if sides is None:
+    if net.sides is not None:
+        return _longer(net, *net.sides)
+    if all(type(e).on_net is Effect.on_net for e in net.effects):
         return 1.0
-    warp, weft = sides[0] / np.diff(net.u)[:, None], sides[1] / np.diff(net.v)[None, :]
+    return max(1.0, _longer(net, *(np.linalg.norm(np.diff(net.points, axis=axis), axis=2) for axis in (0, 1))))
+
+
+def _longer(net: Net, warp: np.ndarray, weft: np.ndarray) -> float:
+    """How much larger than flat cells are whose warp pieces (nu - 1, nv) and weft (nu, nv - 1) are so long, mm."""
+    warp, weft = warp / np.diff(net.u)[:, None], weft / np.diff(net.v)[None, :]
     return float(np.nanmean(warp) * np.nanmean(weft)) if np.isfinite(warp).any() and np.isfinite(weft).any() else 1.0
 
 

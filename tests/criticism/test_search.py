@@ -111,6 +111,30 @@ def test_the_more_another_effect_explains_the_more_a_look_must_promise(best, lef
     assert bool(asked) is tried
 
 
+@pytest.mark.parametrize(("lost", "kept"), [(0, False), (15, True), (POINTS, True)])
+def test_a_fit_from_where_the_ply_was_meant_to_lie_must_predict_as_much(lost, kept):
+    """What is lost counts nothing in chi-square: a seed off the part, where nothing is predicted, was the best fit."""
+    shape = np.sin(5.0 * AT[:, 0])
+    truth = np.array([0.0, 0.3, 0.2])
+    measured = PLACES @ truth + shape
+
+    def predict(v):
+        near = abs(v[0]) < 4.0
+        out = PLACES @ (v[:3] if near else np.array([v[0] - 8.0, *v[1:3]])) + v[3] / 0.05 * shape * (
+            1.0 if near else 0.9
+        )
+        out[: lost if near else 0] = np.nan
+        return out
+
+    predict.beside = lambda at, step: None
+    base = base_at((8.0, 0.3, 0.2), measured)
+    base = replace(base, fit=replace(base.fit, residual=measured - PLACES @ truth))
+    experiment = SimpleNamespace(measured=measured, top_shear=30.0)
+    found = add_effect(experiment, whiten, base, Look("slip", Model(("slip",)), predict))
+    assert bool(found.values[0] > 4.0) is kept
+    assert np.isfinite(found.fit.residual).all()
+
+
 def test_progress_never_goes_back_whatever_the_number_of_rounds():
     shares = []
     for passed in range(4):

@@ -8,7 +8,7 @@ import pytest
 
 import geomdrap as gd
 from geomdrap.fishnet import Fabric
-from geomdrap.fishnet.effect import in_order, surface_with
+from geomdrap.fishnet.effect import in_order, net_with, surface_with
 from geomdrap.fishnet.held_warp import HeldWarp
 from geomdrap.fishnet.laid_down import laid_down
 from geomdrap.fishnet.sway import swayed
@@ -73,3 +73,26 @@ def test_it_is_none_where_more_than_placement_and_stiffness_differ(dome):
     assert to_first_order(dome, near, effects(SOFT, thickness={"offset": 1.0})) is None
     assert to_first_order(dome, near, effects({"locking": {"angle": 10.0}})) is None
     assert to_first_order(dome, at_rest(dome, effects({})), effects(SOFT)) is None
+
+
+def test_it_holds_for_a_piece_of_several_and_under_effects_on_the_net(dome):
+    """Springback acts on what comes to rest; a second piece of the part does not count."""
+    points, triangles = dome.points, dome.triangles
+    both = gd.Surface(np.vstack([points, points + [400.0, 0.0, 0.0]]), np.vstack([triangles, triangles + len(points)]))
+    of, then = ({"springback": {"fraction": 0.2}, "shear-stiffness": {"ratio": r}} for r in (0.02, 0.0202))
+    near, alone = at_rest(both, effects(of)), at_rest(dome, effects(of))
+    np.testing.assert_allclose(near.shear, alone.shear, atol=1e-6)
+    quick = net_with(in_order(effects(then)), to_first_order(both, near, effects(then)))
+    full = at_rest(both, effects(then), near)
+    known = np.isfinite(full.shear) & np.isfinite(quick.shear) & np.isfinite(near.shear)
+    change, error = (full.shear - near.shear)[known], (full.shear - quick.shear)[known]
+    assert known.sum() > 0.95 * np.isfinite(full.shear).sum()
+    assert np.sqrt((error**2).mean()) < 0.1 * np.sqrt((change**2).mean())
+
+
+def test_a_fabric_that_locks_is_swayed_along_its_plateau(dome):
+    near = at_rest(dome, effects({"locking": {"angle": 8.0}}))
+    then = effects({"locking": {"angle": 8.02}})
+    full, quick = at_rest(dome, then, near), to_first_order(dome, near, then)
+    change, error = full.shear - near.shear, full.shear - quick.shear
+    assert np.sqrt(np.nanmean(error**2)) < 0.2 * np.sqrt(np.nanmean(change**2))
