@@ -213,6 +213,10 @@ class Experiment:
         half = max(0.5 * pitch, first)
         return replace(self, pitches=(first, half), coarser=pitch if half < pitch else None, coarseness=[])
 
+    def of_half_pitch(self) -> Experiment:
+        """The same experiment with all nets of half the pitch."""
+        return replace(self, pitches=(0.5 * self.pitches[0], 0.5 * self.pitches[1]), coarseness=[])
+
     def as_meant(self, effects: Sequence[Effect]) -> dict[str, str | float | tuple[float, ...]]:
         """How the ply was meant to lie, as a model file with effects holds it: with what relaxed nets depend on."""
         nets = {"pitch": self.pitches[1], "held": self.held} if any(e.costly for e in effects) else {}

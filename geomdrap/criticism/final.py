@@ -12,7 +12,7 @@ import numpy as np
 
 from geomdrap.criticism.evidence import MOST, RIVAL_SHARE, Evidence, rivals
 from geomdrap.criticism.experiment import Experiment, restless
-from geomdrap.criticism.fitted_on import doubted_for_facets, refined, refit, with_fresh_slopes
+from geomdrap.criticism.fitted_on import doubted_for_facets, doubted_for_pitch, refined, refit, with_fresh_slopes
 from geomdrap.criticism.likelihood import Scatter, is_noise
 from geomdrap.criticism.model import Fitted
 from geomdrap.criticism.search import Round, judge_of
@@ -41,7 +41,8 @@ def final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Expe
         return kept, doubted_for_facets(experiment, model)
     if scatter.size > 0.0 and whole:
         model = refit(experiment, whiten, model)
-    return experiment, doubted_for_facets(experiment, with_fresh_slopes(experiment, model))
+    model = doubted_for_facets(experiment, with_fresh_slopes(experiment, model))
+    return experiment, doubted_for_pitch(experiment, model) if model.model.effects else model
 
 
 def said_of_coarser(meant: Experiment, last: Experiment, model: Fitted) -> tuple[str, ...]:

@@ -126,12 +126,26 @@ def doubted_for_facets(experiment: Experiment, model: Fitted) -> Fitted:
     Chords are of second order: what is left after every facet was split in four and rounded is a third of what that
     changed. Nothing is known of it where facets are not rounded, or a net on them does not predict what was measured.
     """
-    smooth, rough = (Predictor(e, model.model)(model.values) for e in (experiment, experiment.unsmoothed()))
-    known = np.isfinite(smooth - rough)
-    if note_on(experiment.surface) or known.mean() < MOSTLY:
+    return model if note_on(experiment.surface) else _doubted(experiment, model, experiment.unsmoothed(), 1.0 / 3.0)
+
+
+def doubted_for_pitch(experiment: Experiment, model: Fitted) -> Fitted:
+    """The model with what the pitch leaves in doubt of its values, where no relaxed net comes in.
+
+    Nets are of second order: what half the pitch changes is three quarters of that. A weft side that grows with the
+    shear of its cell grows with that of a cell of some size.
+    """
+    return _doubted(experiment, model, experiment.of_half_pitch(), 4.0 / 3.0)
+
+
+def _doubted(experiment: Experiment, model: Fitted, other: Experiment, share: float) -> Fitted:
+    """The model with a share of what another experiment's prediction changes in its values, were that measured."""
+    here, there = (Predictor(e, model.model)(model.values) for e in (experiment, other))
+    known = np.isfinite(here - there)
+    if known.mean() < MOSTLY:
         return model
     slopes = (model.fit.slopes / experiment.noise[:, None])[known]
     norm = np.linalg.norm(slopes, axis=0) + 1e-300
-    change = ((smooth - rough) / experiment.noise)[known]
-    doubt = np.abs(np.linalg.lstsq(slopes / norm, change, rcond=1e-9)[0] / norm) / 3.0
+    change = ((here - there) / experiment.noise)[known]
+    doubt = share * np.abs(np.linalg.lstsq(slopes / norm, change, rcond=1e-9)[0] / norm)
     return replace(model, doubt=doubt if model.doubt is None else np.hypot(model.doubt, doubt))

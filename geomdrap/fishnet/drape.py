@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from geomdrap.surface import Surface
 
 
+UNSETTLED = 1e-3  # of the length of a side
 AXIS_ROUNDS, AXIS_STRAIN = 10, 1e-8  # marches until a sliding weft generator has its length: one, without skew
 
 
@@ -91,11 +92,27 @@ def _march_sliding(
     grid = _march(mesh, start, extent, pitch, fabric, 0.0, guides)
     if fabric.slip != 0.0:
         for _ in range(AXIS_ROUNDS):
-            strain = strain_on_axis(grid, extent.west, fabric.slip)
-            if np.abs(strain - grid.node[extent.west, :, STRAIN]).max() < AXIS_STRAIN:
+            if _off_on_axis(grid, extent, fabric) < AXIS_STRAIN:
                 break
+            strain = strain_on_axis(grid, extent.west, fabric.slip)
             grid = _march(mesh, start, extent, pitch, fabric, strain, guides)
     return grid
+
+
+def _off_on_axis(grid: Grid, extent: Extent, fabric: Fabric) -> float:
+    """By how much strain the weft generator is off what the cells beside it ask for."""
+    strain = strain_on_axis(grid, extent.west, fabric.slip)
+    return float(np.abs(strain - grid.node[extent.west, :, STRAIN]).max())
+
+
+def _unsettled(grid: Grid, extent: Extent, fabric: Fabric) -> tuple[str, ...]:
+    """A warning where weft sides grow with the shear, and the shear with them, without an end."""
+    if fabric.slip == 0.0 or not (off := _off_on_axis(grid, extent, fabric)) > UNSETTLED:
+        return ()
+    return (
+        f"slip of {fabric.slip:g}: weft sides at the origin and the shear beside them do not settle (they still "
+        f"change by {100.0 * off:.2g} % of their length): the net is one of many; use less slip, or another heading",
+    )
 
 
 def _march(
@@ -212,5 +229,10 @@ def _as_net(start: Start, reach: tuple[float, float] | None, extent: Extent, gri
         shear=shear,
         sides=_sides_as_they_lie(grid, fabric),
         notes=notes,
-        warnings=(*unit_hint(surface), *_cut_off(surface, part), *coarse_facets(part, pitch)),
+        warnings=(
+            *unit_hint(surface),
+            *_cut_off(surface, part),
+            *coarse_facets(part, pitch),
+            *_unsettled(grid, extent, fabric),
+        ),
     )

@@ -14,7 +14,7 @@ import geomdrap as gd
 from geomdrap.criticism.evidence import Evidence
 from geomdrap.criticism.experiment import Experiment, Layup
 from geomdrap.criticism.fit import Fit
-from geomdrap.criticism.fitted_on import doubted_for_facets, refined
+from geomdrap.criticism.fitted_on import doubted_for_facets, doubted_for_pitch, refined
 from geomdrap.criticism.likelihood import NO_SCATTER
 from geomdrap.criticism.model import Fitted, Model
 from geomdrap.criticism.prepare import prepare
@@ -292,3 +292,20 @@ def test_a_net_is_relaxed_from_the_last_one_whatever_else_acts():
         got = warm.predict(effects)
         np.testing.assert_allclose(got, prepared().predict(effects), atol=1e-3)
     assert len(warm.last) == 2  # with thickness and without
+
+
+class OfPitch(Smooth):
+    """An experiment whose nets are PER_PITCH·pitch² off in every value, on facets or not."""
+
+    def __init__(self, pitch=1.0):
+        super().__init__(pitch**2)
+        self.pitch, self.pitches = pitch, (pitch, pitch)
+
+    def of_half_pitch(self):
+        return OfPitch(0.5 * self.pitch)
+
+
+def test_what_the_pitch_leaves_in_doubt_is_all_of_its_error():
+    old = Fitted(Model(("thickness",)), Fit(TRUTH, np.zeros(POINTS), SLOPES, 0.0), np.full(4, 0.03))
+    got = doubted_for_pitch(OfPitch(), old)
+    np.testing.assert_allclose(got.doubt, np.hypot(0.03, np.abs(PER_PITCH)))

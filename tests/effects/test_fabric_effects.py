@@ -5,6 +5,8 @@ import pytest
 from shared import drape, grid_of
 
 import geomdrap as gd
+from geomdrap.blind.draw import Options, draw, start_point
+from geomdrap.blind.files import write_part
 from geomdrap.surface import shapes
 
 PLANE = shapes.plane(200.0, 160.0, 10.0)
@@ -93,6 +95,18 @@ def test_at_full_slip_warp_yarns_on_a_sphere_are_circles_of_latitude():
 def test_yarns_do_not_slip_where_nothing_shears():
     plain, slipped = drape(PLANE), drape(PLANE, "slip:coefficient=0.8")
     np.testing.assert_allclose(slipped.points, plain.points, atol=1e-9)
+
+
+@pytest.mark.parametrize(("slip", "settles"), [(0.5, True), (0.8, False)])
+def test_where_slip_and_shear_feed_each_other_the_net_says_so(tmp_path, slip, settles):
+    """On the foot of this boss the weft generator never has the length that the cells beside it ask for."""
+    case = draw(50004, Options(effect="slip", part="hat"))
+    write_part(tmp_path / "hat.stl", case.tool)
+    place = {"origin": tuple(start_point(case.tool, case.believed)), "angle": case.believed.angle, "project": True}
+    net = gd.drape(
+        gd.read_surface(tmp_path / "hat.stl"), pitch=4.0, effects=[gd.effects.make("slip", coefficient=slip)], **place
+    )
+    assert any("do not settle" in warning for warning in net.warnings) is not settles
 
 
 def test_slip_grows_the_weft_of_skewed_cloth_from_the_axis_on():
