@@ -104,9 +104,13 @@ def _labels_agree(measurement: Measurement, factor: float) -> bool:
 
 
 def looks_wrong(net: Net, measurement: Measurement, found: Matched) -> tuple[str, ...]:
-    """Warnings where labels, directions or shear angles are probably others than the table says."""
-    shear = check_shear(measurement.shear, found.shear, measurement.source)
-    return (*check_labels(net, measurement), *check_directions(measurement, found), *shear)
+    """Warnings where labels, directions or shear angles are probably others than the table says.
+
+    Directions are held against those predicted at the labels, so that of wrong labels they say nothing.
+    """
+    labels = check_labels(net, measurement)
+    directions = () if labels else check_directions(measurement, found)
+    return (*labels, *directions, *check_shear(measurement.shear, found.shear, measurement.source))
 
 
 def check_labels(net: Net, measurement: Measurement) -> tuple[str, ...]:

@@ -45,11 +45,23 @@ def test_swapped_warp_and_weft_are_noticed_and_their_noise_is_not_that_of_the_tu
     net, m = case
     c = compare_net(net, _swapped(m))
     (said,) = c.warnings
-    assert "fibres.csv: it looks as if the directions of warp and weft are swapped, or the heading is off by 90" in said
+    assert (
+        "fibres.csv: it looks as if the directions of warp and weft are swapped, or the heading is off by 90" in said
+    )
     for noise in (c.noise_warp, c.noise_weft):
         assert noise.typical < 3.0 * SIGMA
     warnings = prepare(net.surface, _swapped(m), Layup((0.0, 0.0, 80.0), 0.0), sigma_xyz=0.2)[0].warnings
     assert any("are swapped" in w for w in warnings)
+
+
+def test_a_heading_off_by_a_right_angle_is_said_of_the_labels_and_no_swap_of_the_directions(case):
+    net, m = case
+    u, v = (a.ravel() for a in np.meshgrid(np.arange(-36.0, 37.0, 8.0), np.arange(-36.0, 37.0, 8.0)))
+    turned = gd.drape(net.surface, (0.0, 0.0, 80.0), 90.0, 5.0, project=True)
+    (said,) = compare_net(turned, replace(m, u=u, v=v)).warnings
+    assert "turned by 90 degrees" in said
+    (said,) = compare_net(net, _swapped(replace(m, u=u, v=v))).warnings
+    assert "directions of warp and weft are swapped" in said
 
 
 @pytest.mark.parametrize(("family", "other"), [("warp", "weft"), ("weft", "warp")])
