@@ -98,6 +98,55 @@ def test_directions_along_the_normal_are_left_out_and_do_not_raise_the_noise_of_
     assert c.noise_warp.typical == pytest.approx(SIGMA, rel=0.2)
 
 
+FEW = [3, 40, 57]
+
+
+def _with_a_few(m, family):
+    """Labelled marks with the directions of one family at a few of them only."""
+    u, v = (a.ravel() for a in np.meshgrid(np.arange(-36.0, 37.0, 8.0), np.arange(-36.0, 37.0, 8.0)))
+    few = np.full(m.warp.shape, np.nan)
+    few[FEW] = getattr(m, family)[FEW]
+    return replace(m, u=u, v=v, **{family: few})
+
+
+@pytest.mark.parametrize(("family", "other"), [("warp", "weft"), ("weft", "warp")])
+def test_a_few_directions_of_one_family_have_the_noise_of_the_other(case, family, other):
+    net, m = case
+    experiment, notes = prepare(net.surface, _with_a_few(m, family), Layup((0.0, 0.0, 80.0), 0.0), sigma_xyz=0.2)
+    (said,) = [n for n in notes if f"direction of the {family}" in n]
+    assert f"that of the {other}: there are too few directions of the {family}" in said
+    assert float(said.split(" deg")[0].split()[-1]) == pytest.approx(SIGMA, rel=0.2)
+    assert experiment.mask[:, experiment.channels.index(family)].sum() == len(FEW)
+    assert np.isfinite(experiment.noise).all()
+
+
+def test_a_few_directions_whose_noise_nothing_says_are_left_out_and_a_warning_says_so(case):
+    net, m = case
+    alone = replace(_with_a_few(m, "warp"), weft=None)
+    experiment, _ = prepare(net.surface, alone, Layup((0.0, 0.0, 80.0), 0.0), sigma_xyz=0.2)
+    (said,) = [w for w in experiment.warnings if "left out" in w]
+    assert (
+        "fibres.csv: there are too few directions of the warp to read their noise from them, and they are left out"
+        in said
+    )
+    assert "give it (--sigma-direction)" in said
+    assert "warp" not in experiment.channels
+    assert experiment.measurement.warp is None
+    told, _ = prepare(net.surface, alone, Layup((0.0, 0.0, 80.0), 0.0), sigma_xyz=0.2, sigma_direction=SIGMA)
+    assert told.mask[:, told.channels.index("warp")].sum() == len(FEW)
+
+
+def test_upright_warp_but_for_a_few_rows_does_not_end_the_diagnosis(case):
+    net, m = case
+    table = _with_a_few(m, "warp")
+    upright = np.where(np.isfinite(table.warp), table.warp, [0.0, 0.0, 1.0])
+    inner = np.hypot(table.u, table.v) < 30.0
+    table = replace(table, warp=upright).take(inner | np.isin(np.arange(len(m)), FEW))
+    experiment, notes = prepare(net.surface, table, Layup((0.0, 0.0, 80.0), 0.0), sigma_xyz=0.2)
+    assert any("point out of the part" in w for w in experiment.warnings)
+    assert any("too few directions of the warp" in n for n in notes)
+
+
 def test_wild_warp_does_not_raise_the_noise_of_the_weft(case):
     net, m = case
     wild = m.warp + np.random.default_rng(1).normal(0.0, 0.2, m.warp.shape)
