@@ -154,7 +154,7 @@ def _lines(result: dict[str, Any]) -> list[str]:
     if result["edited"]:
         lines.append("edited  solved.json: not what solving wrote, so nothing is graded")
     if result["earlier"]:
-        lines.append("earlier solved.json: of a version that does not say what it solved, so nothing is graded")
+        lines.append("earlier solved.json: of a version that wrote no digest, so nothing is graded")
     if result["changed_since"]:
         on_sealed = "" if result["changed"] else "; the verdict is on what was sealed"
         lines.append(f"since   {', '.join(result['changed_since'])} changed after solving{on_sealed}")
