@@ -52,37 +52,54 @@ def reveal(folder: Path, anyway: bool = False) -> dict[str, Any]:
     """Check the seal, show the truth and grade the verdict; written to revealed.json.
 
     GeomdrapError if the seal is broken or the verdict was given for another one, and, unless ``anyway``, if there is
-    no verdict, if it was ``edited`` afterwards, or if a file that was solved is not the one that was sealed
-    (``changed``): ``grade`` is None then. ``changed_since`` names files that have changed since they were solved.
+    no verdict, if it is of an ``earlier`` version without a digest, if it was ``edited`` afterwards, or if a file
+    that was solved is not the one that was sealed (``changed``): ``grade`` is None then. ``changed_since`` names
+    files that have changed since they were solved.
     """
     truth = unseal(folder)
     solved = _read_solved(folder)
     seen = solved.get("files", {}) if solved else {}
-    changed = [name for name, sealed in truth.get("files", {}).items() if solved and seen.get(name) != sealed]
-    if changed and not anyway:
+    earlier = solved is not None and "digest" not in solved
+    told = solved is not None and not (earlier and "files" not in solved)
+    changed = [name for name, sealed in truth.get("files", {}).items() if told and seen.get(name) != sealed]
+    edited = solved is not None and not earlier and solved["digest"] != _digest(solved)
+    if not anyway:
+        _refuse_what_proves_nothing(folder, solved is not None, changed, earlier, edited)
+    result: dict[str, Any] = {"schema": "geomdrap.blind-reveal/1", "seal": read_seal(folder), "truth": truth}
+    result.update({"revealed_at": _now(), "verdict": None, "candidates": [], "grade": None, "right": None})
+    result.update({"changed": changed, "edited": edited, "earlier": earlier})
+    result["changed_since"] = _changed_since(folder, seen)
+    result["parameters"] = parameters(truth, solved["diagnosis"] if solved else {})
+    if solved is not None and not (changed or edited or earlier):
+        graded = grade(truth["answer"], solved["verdict"], solved["candidates"])
+        found = {key: solved[key] for key in ("verdict", "candidates", "confidence", "solved_at")}
+        result.update({**found, "grade": graded, "right": graded in GOOD})
+    if not (folder / REVEALED).exists():
+        _write(folder / REVEALED, result)
+    return result
+
+
+def _refuse_what_proves_nothing(
+    folder: Path, is_solved: bool, changed: list[str], earlier: bool, edited: bool
+) -> None:
+    """Raise GeomdrapError for a set without a verdict, and for a verdict that is not one on what was sealed."""
+    if not is_solved:
+        raise GeomdrapError(f"{folder} is not solved yet; run geomdrap blind solve first, or reveal it --anyway")
+    if changed:
         raise GeomdrapError(
             f"{folder / changed[0]} was not the file that was sealed when the set was solved, so the verdict proves "
             "nothing; put it back and solve the set again, or reveal it --anyway"
         )
-    edited = solved is not None and solved.get("digest") != _digest(solved)
-    if edited and not anyway:
+    if earlier:
+        raise GeomdrapError(
+            f"{folder / SOLVED} was written by an earlier version, without a digest that shows edits; "
+            "solve the set again, or reveal it --anyway"
+        )
+    if edited:
         raise GeomdrapError(
             f"{folder / SOLVED} was edited after it was written, so the verdict proves nothing; solve the set again, "
             "or reveal it --anyway"
         )
-    if solved is None and not anyway:
-        raise GeomdrapError(f"{folder} is not solved yet; run geomdrap blind solve first, or reveal it --anyway")
-    result: dict[str, Any] = {"schema": "geomdrap.blind-reveal/1", "seal": read_seal(folder), "truth": truth}
-    result.update({"revealed_at": _now(), "verdict": None, "candidates": [], "grade": None, "right": None})
-    result.update({"changed": changed, "edited": edited, "changed_since": _changed_since(folder, seen)})
-    result["parameters"] = parameters(truth, solved["diagnosis"] if solved else {})
-    if solved is not None and not changed and not edited:
-        told = grade(truth["answer"], solved["verdict"], solved["candidates"])
-        found = {key: solved[key] for key in ("verdict", "candidates", "confidence", "solved_at")}
-        result.update({**found, "grade": told, "right": told in GOOD})
-    if not (folder / REVEALED).exists():
-        _write(folder / REVEALED, result)
-    return result
 
 
 def _read_solved(folder: Path) -> dict[str, Any] | None:

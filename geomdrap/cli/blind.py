@@ -153,10 +153,11 @@ def _lines(result: dict[str, Any]) -> list[str]:
         lines.append(f"changed {', '.join(result['changed'])}: not what was sealed, so nothing is graded")
     if result["edited"]:
         lines.append("edited  solved.json: not what solving wrote, so nothing is graded")
+    if result["earlier"]:
+        lines.append("earlier solved.json: of a version that wrote no digest, so nothing is graded")
     if result["changed_since"]:
-        lines.append(
-            f"since   {', '.join(result['changed_since'])} changed after solving; the verdict is on what was sealed"
-        )
+        on_sealed = "" if result["changed"] else "; the verdict is on what was sealed"
+        lines.append(f"since   {', '.join(result['changed_since'])} changed after solving{on_sealed}")
     if result["grade"] is not None:
         rivals = f" ({', '.join(result['candidates'])})" if result["verdict"] == "ambiguous" else ""
         lines += [f"found   {result['verdict']}{rivals}", f"grade   {result['grade']}"]

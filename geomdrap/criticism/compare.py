@@ -132,7 +132,7 @@ def compare_net(
             *measurement.warnings,
             *said,
             *looks_wrong(net, measurement, matched),
-            *_words(measurement, outliers),
+            *_words(measurement, outliers, matched.used),
         ),
     )
 
@@ -191,14 +191,14 @@ def _trusted(matched: Matched, outliers: tuple[Outlier, ...]) -> np.ndarray:
     return trusted
 
 
-def _words(measurement: Measurement, outliers: tuple[Outlier, ...]) -> tuple[str, ...]:
-    """Sentences on the outliers: how many, and which labels seem wrong."""
+def _words(measurement: Measurement, outliers: tuple[Outlier, ...], used: np.ndarray) -> tuple[str, ...]:
+    """Sentences on the outliers: how many, and which labels seem wrong; ``used`` (n,) bool have a prediction."""
     out = []
     if outliers:
         lines = ", ".join(str(line) for line in sorted({outlier.line for outlier in outliers})[:8])
         more = ", …" if len({outlier.line for outlier in outliers}) > 8 else ""
         out.append(f"{len(outliers)} values stand out from their neighbours (lines {lines}{more}) and are set apart")
-    told, left = _words_on_lines(measurement, [one for one in outliers if one.shift is not None])
+    told, left = _words_on_lines(measurement, [one for one in outliers if one.shift is not None], used)
     for outlier in left[:8]:
         a, b = outlier.shift or (0, 0)
         where = f"{a:+d} along u and {b:+d} along v"
@@ -206,8 +206,10 @@ def _words(measurement: Measurement, outliers: tuple[Outlier, ...]) -> tuple[str
     return (*out, *told)
 
 
-def _words_on_lines(measurement: Measurement, shifted: list[Outlier]) -> tuple[list[str], list[Outlier]]:
-    """A sentence for each line of marks that are off alike, and the outliers of no such line."""
+def _words_on_lines(
+    measurement: Measurement, shifted: list[Outlier], used: np.ndarray
+) -> tuple[list[str], list[Outlier]]:
+    """A sentence for each line of marks of which some are off alike, and the outliers of no such line."""
     told, left = [], shifted
     for name, labels, shifts in (("v", measurement.v, {(1, 0), (-1, 0)}), ("u", measurement.u, {(0, 1), (0, -1)})):
         if labels is None:
@@ -216,9 +218,10 @@ def _words_on_lines(measurement: Measurement, shifted: list[Outlier]) -> tuple[l
             own = [one for one in left if one.shift == shift and labels[one.row] == level]
             if len(own) >= FEWEST and shift is not None:
                 where = f"{shift[0]:+d} along u and {shift[1]:+d} along v"
+                share = f"{len(own)} of {int((used & (labels == level)).sum())}"
                 told.append(
-                    f"the {len(own)} marks with {name} = {level:g} mm: all labels of this line seem to be off; they "
-                    f"fit {where} (in marks)"
+                    f"the marks with {name} = {level:g} mm: {share} labels of this line seem to be off; they fit "
+                    f"{where} (in marks)"
                 )
                 left = [one for one in left if one not in own]
     return told, left

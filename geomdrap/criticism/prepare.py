@@ -11,6 +11,7 @@ from geomdrap.criticism.cleaned import POSITION, spoilt
 from geomdrap.criticism.experiment import CHANNELS, COARSE, FINE, Experiment, Layup, flatten, predicted
 from geomdrap.criticism.smooth import note_on
 from geomdrap.errors import MeasurementError
+from geomdrap.measurement.local import FEWEST
 from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
 from geomdrap.measurement.match import Matched, match
 from geomdrap.measurement.noise import REPEATS, RESIDUAL, Noise, noise_of, noise_of_directions, repeats_of
@@ -27,6 +28,7 @@ MOST_POINTS = 400  # with a dense covariance; more points are thinned out evenly
 OPTIONS = {"position": "--sigma-xyz", "shear": "--sigma-shear", "direction": "--sigma-direction"}
 UNITS = {"position": "mm", "shear": "deg", "direction": "deg"}
 NOT_POSITION = {"shear": "shear", "warp": "direction", "weft": "direction"}
+_OTHER = {"warp": "weft", "weft": "warp"}
 
 
 def prepare(
@@ -43,7 +45,8 @@ def prepare(
 
     ``sigma_xyz`` mm, ``sigma_shear`` and ``sigma_direction`` degrees apply where the table has no noise of its own.
     With neither, noise is read from replicates, else from how neighbouring residuals differ, and a note says so; that
-    of directions, where these do not say it, from that of the shear. Raises MeasurementError where nothing can be
+    of directions, where these do not say it, from that of the shear, and that of a few directions of one family from
+    the other; where that is not known either, these are left out. Raises MeasurementError where nothing can be
     compared, or points at fewer than ``FEWEST_PLACES`` places.
     """
     measurement = without_upright(surface, measurement)
@@ -82,6 +85,10 @@ def prepare(
     given = (sigma_xyz, sigma_shear, sigma_direction)
     sigma, more, doubts = _noise(measurement, channels, values, values - table, at, given)
     warnings += doubts
+    known = np.isfinite(sigma).any(axis=0)
+    if not known.all():
+        channels, measurement = _with_known_noise(channels, known, measurement)
+        values, mask, sigma = values[:, known], mask[:, known], sigma[:, known]
     mask &= ~spoilt(channels, mask.shape, find_outliers(net, measurement, found, *_by_kind(channels, sigma)))
     if not mask.any():
         raise MeasurementError(f"{measurement.source}: every point stands out from its neighbours; check the table")
@@ -150,7 +157,7 @@ def _noise(
 ) -> tuple[np.ndarray, tuple[str, ...], tuple[str, ...]]:
     """Noise (n, c) of every value, notes and warnings; ``given`` for positions, shear and directions.
 
-    Raises MeasurementError where there is no way to know it.
+    NaN for directions that are too few to say it. Raises MeasurementError where else there is no way to know it.
     """
     sigma = np.full(values.shape, np.nan)
     repeats = repeats_of(measurement)
@@ -158,6 +165,7 @@ def _noise(
     warnings: tuple[str, ...] = ()
     columns = (measurement.sigma_xyz, measurement.sigma_shear, measurement.sigma_direction)
     shear = given[1]
+    few = []
     for kind, own in _alike(channels):
         k = list(OPTIONS).index(kind)
         if kind == "direction":
@@ -165,13 +173,46 @@ def _noise(
         else:
             name = OPTIONS[kind].removeprefix("--").replace("-", "_")
             noise, more = noise_of(name, columns[k], given[k], values[:, own], repeats, residual[:, own], at)
+        warnings += tuple(words for words in more if words not in warnings)
+        if kind == "direction" and noise.sigma is None and _are_few(residual[:, own[0]], at):
+            few.append(own[0])
+            continue
         sigma[:, own] = _known(noise, kind, measurement)[:, None]
         shear = noise.typical if kind == "shear" else shear
         read = noise.source in (REPEATS, RESIDUAL)
         what = f"{kind} of the {channels[own[0]]}" if kind == "direction" else kind
         notes += (f"noise of the {what} {noise.typical:.2g} {UNITS[kind]}, from {noise.source}",) if read else ()
-        warnings += tuple(words for words in more if words not in warnings)
+    for k in few:
+        other = channels.index(_OTHER[channels[k]]) if _OTHER[channels[k]] in channels else k
+        sigma[:, k] = np.sqrt(np.mean(sigma[:, other] ** 2))
+        said = _words_on_few(measurement, channels[k], sigma[0, k])
+        notes, warnings = (notes, (*warnings, said)) if np.isnan(sigma[0, k]) else ((*notes, said), warnings)
     return sigma, notes, warnings
+
+
+def _are_few(residual: np.ndarray, at: np.ndarray) -> bool:
+    """Whether residuals (n,) at places ``at`` (n, 2) are too few for differences of neighbours."""
+    return int((np.isfinite(residual) & np.isfinite(at).all(axis=1)).sum()) < FEWEST
+
+
+def _words_on_few(measurement: Measurement, family: str, sigma: float) -> str:
+    """What the noise of a few directions of a family is taken to be, degrees, or that they are left out (NaN)."""
+    if np.isfinite(sigma):
+        of = f"{sigma:.2g} deg, that of the {_OTHER[family]}"
+        return f"noise of the direction of the {family} {of}: there are too few directions of the {family}"
+    return (
+        f"{measurement.source}: there are too few directions of the {family} to read their noise from them, and they "
+        "are left out; give it (--sigma-direction)"
+    )
+
+
+def _with_known_noise(
+    channels: tuple[str, ...], known: np.ndarray, measurement: Measurement
+) -> tuple[tuple[str, ...], Measurement]:
+    """The channels of ``known`` (c,) noise, and the measurement without the directions of the others."""
+    held = tuple(name for name, told in zip(channels, known, strict=True) if told)
+    warp, weft = (getattr(measurement, name) if name in held else None for name in ("warp", "weft"))
+    return held, replace(measurement, warp=warp, weft=weft)
 
 
 def _alike(channels: tuple[str, ...]) -> list[tuple[str, list[int]]]:

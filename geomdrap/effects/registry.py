@@ -8,6 +8,7 @@ from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
 
+from geomdrap.effects.guard import guard
 from geomdrap.errors import EffectError
 from geomdrap.fishnet import Effect, Parameter
 
@@ -42,7 +43,7 @@ def _own(name: str) -> type[Effect]:
 
 @cache
 def _installed() -> dict[str, type[Effect]]:
-    """The library's own effects and those that installed packages offer as entry points.
+    """The library's own effects and those that installed packages offer as entry points, which are guarded.
 
     Raises EffectError for an entry point that is no effect with a name of its own.
     """
@@ -55,14 +56,19 @@ def _installed() -> dict[str, type[Effect]]:
                 f"effect {point.name} of {point.value} does not load ({error}); repair or remove it"
             ) from error
         _check(effect, point.value, found)
+        for each in effect.__mro__:
+            if issubclass(each, Effect) and each.__module__.partition(".")[0] != "geomdrap":
+                guard(each, f"{each.__module__}:{each.__qualname__}")
         found[effect.name] = effect
     return found
 
 
 def _check(effect: object, place: str, known: dict[str, type[Effect]]) -> None:
-    """Raise EffectError for what is no effect, has no name, or has that of another."""
+    """Raise EffectError for what is no effect or has no name of its own; a list of parameters becomes a tuple."""
     if not (isinstance(effect, type) and issubclass(effect, Effect) and effect.name):
         raise EffectError(f"{place} is no subclass of geomdrap.Effect with a name; give it one: name = 'my-effect'")
+    if isinstance(effect.parameters, list):
+        effect.parameters = tuple(effect.parameters)
     if not (isinstance(effect.parameters, tuple) and all(isinstance(p, Parameter) for p in effect.parameters)):
         raise EffectError(f"{place}: parameters must be a tuple of geomdrap.Parameter, as in samples/my_effect.py")
     if known.get(effect.name, effect) is not effect:

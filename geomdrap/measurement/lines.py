@@ -1,4 +1,8 @@
-"""Whole lines of the grid of marks whose labels are off by one mark: beside one another none of them stands out."""
+"""Lines of the grid of marks whose labels are off by one mark: beside one another none of them stands out.
+
+Found are single lines of which most marks are off. Two lines beside one another that are off, and a line labelled as
+the next one, are not.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +26,10 @@ OFF = 0.7
 
 
 def wrong_lines(net: Net, measurement: Measurement) -> dict[int, tuple[tuple[int, int], float]]:
-    """By row: the marks (along warp, weft) by which its label must be moved, as all of its line, and mm it is off."""
+    """By row: the marks (along warp, weft) by which its label must be moved, as most of its line, and mm it is off.
+
+    Off the marks of the lines beside it; off the prediction where there are none.
+    """
     if measurement.u is None or measurement.v is None:
         return {}
     steps = mark_spacing(measurement.u), mark_spacing(measurement.v)
@@ -32,7 +39,6 @@ def wrong_lines(net: Net, measurement: Measurement) -> dict[int, tuple[tuple[int
     labels = np.column_stack([measurement.u, measurement.v])
     grid = np.round(labels / size).astype(int)
     present = _residual(net, measurement.points, labels)
-    off = np.linalg.norm(present, axis=1)
     out: dict[int, tuple[tuple[int, int], float]] = {}
     for along in (0, 1):
         shifts = [np.eye(2, dtype=int)[along] * way for way in (-1, 1)]
@@ -40,9 +46,14 @@ def wrong_lines(net: Net, measurement: Measurement) -> dict[int, tuple[tuple[int
         trend = _beside(grid, 1 - along, present)
         for rows, best in _off_by_one(grid[:, 1 - along], present, moved, trend, float(size[along])):
             shift = (int(shifts[best][0]), int(shifts[best][1]))
-            known = np.flatnonzero(rows & np.isfinite(off)).tolist()
-            out.update({row: (shift, float(off[row])) for row in known})
+            off = _beyond(present, trend)
+            out.update({row: (shift, float(off[row])) for row in np.flatnonzero(rows & np.isfinite(off)).tolist()})
     return out
+
+
+def _beyond(residual: np.ndarray, trend: np.ndarray) -> np.ndarray:
+    """Length (n,) mm of residuals (n, 3) off the ``trend`` of the lines beside, or as they are where that is NaN."""
+    return np.asarray(np.linalg.norm(residual - np.where(np.isfinite(trend), trend, 0.0), axis=1))
 
 
 def _off_by_one(
@@ -50,6 +61,7 @@ def _off_by_one(
 ) -> Iterator[tuple[np.ndarray, int]]:
     """Rows (n,) bool of lines that are a mark off, and which of the ``moved`` residuals (n, 3) they go with.
 
+    Marks of such a line that are nearer as they are, as those before a mark that was skipped, are none of them.
     ``line`` (n,) numbers the lines; ``trend`` (n, 3) is the residual of the lines beside.
     """
     levels = np.unique(line).tolist()
@@ -63,7 +75,10 @@ def _off_by_one(
         # the part must say so too: beside a line that is off, a right one at the rim is off it as well
         nearer = _typical(moved[best][rows]) < _typical(present[rows])
         if nearer and _typical((present - trend)[rows]) > OFF * step and left[best] < BETTER * step:
-            yield rows, best
+            now, then = _beyond(present, trend), _beyond(moved[best], trend)
+            off = rows & np.where(np.isfinite(then), then < now, now > OFF * step)
+            if off.sum() >= FEWEST:
+                yield off, best
 
 
 def _residual(net: Net, points: np.ndarray, labels: np.ndarray) -> np.ndarray:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 NEIGHBOURS = 12
+FEWEST = 8
+"""Places from which on there are planes through neighbours."""
 ROUNDS = 6
 TUNING = 4.685
 """Of Tukey's bisquare: weight 0 beyond so many robust standard deviations (95 % efficient for normal noise)."""
@@ -64,7 +66,7 @@ def deviations(places: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.n
     than in the values. NaN for all where there are fewer than 8 places.
     """
     n, width = values.shape
-    if n < 8:
+    if n < FEWEST:
         return np.full((n, width), np.nan), np.full(n, np.nan)
     near = neighbours(places)
     offset = places[near] - places[:, None]

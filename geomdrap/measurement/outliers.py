@@ -34,7 +34,8 @@ class Outlier:
     """A point that stands out: ``row`` its number in the measurement, ``line`` in the file; position or shear.
 
     ``size`` is what it is off its neighbours by (mm or degrees), ``sigmas`` the same in robust standard deviations;
-    those of a whole line of marks that is off do not stand out beside one another, and may have ``sigmas`` of LIMIT.
+    those of a line of marks that is off do not stand out beside one another: they are held against the lines beside
+    (the prediction where there is none), and may have ``sigmas`` of LIMIT.
     ``shift`` is the number of marks (along warp, weft) by which its label seems wrong, None where it does not.
     """
 
@@ -78,7 +79,7 @@ def find_outliers(
 
 
 def _with_lines(found: list[Outlier], net: Net, measurement: Measurement, matched: Matched) -> list[Outlier]:
-    """The outliers with all marks of whole lines that are labelled a mark off."""
+    """The outliers with all marks that are labelled a mark off along a line."""
     lines, sigmas = wrong_lines(net, measurement), {one.row: one.sigmas for one in found}
     others = [one for one in found if one.row not in lines]
     wrong = [

@@ -104,9 +104,13 @@ def _labels_agree(measurement: Measurement, factor: float) -> bool:
 
 
 def looks_wrong(net: Net, measurement: Measurement, found: Matched) -> tuple[str, ...]:
-    """Warnings where labels, directions or shear angles are probably others than the table says."""
-    shear = check_shear(measurement.shear, found.shear, measurement.source)
-    return (*check_labels(net, measurement), *check_directions(measurement, found), *shear)
+    """Warnings where labels, directions or shear angles are probably others than the table says.
+
+    Directions are held against those predicted at the labels, so that of wrong labels they say nothing.
+    """
+    labels = check_labels(net, measurement)
+    directions = () if labels else check_directions(measurement, found)
+    return (*labels, *directions, *check_shear(measurement.shear, found.shear, measurement.source))
 
 
 def check_labels(net: Net, measurement: Measurement) -> tuple[str, ...]:
@@ -164,8 +168,19 @@ def check_shear(measured: np.ndarray | None, predicted: np.ndarray, source: str)
 
 
 def _has_no_sign(measured: np.ndarray, predicted: np.ndarray) -> bool:
-    """Whether shear angles are all of one sign, and those predicted (n,) of the other are as large without theirs."""
+    """Whether shear angles are all of one sign, and those predicted (n,) of the other are as large without theirs.
+
+    They must go with the size of what is predicted, and with that better than with what is predicted.
+    """
     if measured.min() < 0.0 < measured.max():
+        return False
+    size = np.abs(predicted)
+    if size.std() <= 0.0:
+        return False
+    with_size, with_sign = (
+        float(np.corrcoef(a, b)[0, 1]) for a, b in ((np.abs(measured), size), (measured, predicted))
+    )
+    if not with_size > max(with_sign, 0.0):
         return False
     against = predicted * np.sign(measured.mean()) < 0.0
     a, b = np.abs(measured[against]), np.abs(predicted[against])

@@ -153,12 +153,15 @@ _JOB: list[Job] = []  # of a worker process: the one job that it has
 
 def _begin(plugins: tuple[str, ...], blob: bytes) -> None:
     """Make a worker ready; Ctrl-C is for the parent alone, which lets its workers go."""
-    from geomdrap.effects import load_plugin
+    from geomdrap.effects import available, load_plugin
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for plugin in plugins:
         load_plugin(plugin)
     _JOB[:] = [pickle.loads(blob)]
+    own = ("geomdrap.", "geomdrap_plugin_")
+    if not all(type(effect).__module__.startswith(own) for effect in _JOB[0].effects):
+        available()  # guards those of installed packages
 
 
 def _ready() -> None:

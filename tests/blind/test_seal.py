@@ -111,6 +111,19 @@ def test_a_verdict_that_was_edited_does_not_count(tmp_path):
     assert (shown["edited"], shown["verdict"], shown["grade"], shown["right"]) == (True, None, None, None)
 
 
+@pytest.mark.parametrize("without", [["digest"], ["digest", "files"]])
+def test_a_verdict_of_an_earlier_version_has_no_digest_and_is_not_said_to_be_edited(tmp_path, without):
+    (tmp_path / "measured.csv").write_text("x,y,z\n1,2,3\n")
+    seal(tmp_path, TRUTH)
+    record = write_solved(tmp_path, FOUND, hashes(tmp_path))
+    old = {key: value for key, value in record.items() if key not in without}
+    (tmp_path / "solved.json").write_text(json.dumps(old))
+    with pytest.raises(GeomdrapError, match=r"solved\.json was written by an earlier version.*solve the set again"):
+        reveal(tmp_path)
+    shown = reveal(tmp_path, anyway=True)
+    assert (shown["earlier"], shown["edited"], shown["changed"], shown["grade"]) == (True, False, [], None)
+
+
 @pytest.mark.parametrize(
     ("value", "sigma", "outside", "sign"),
     [

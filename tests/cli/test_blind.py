@@ -139,3 +139,19 @@ def test_reveal_says_which_values_are_wrong_and_what_has_changed(tmp_path, monke
     assert "was edited after it was written" in err
     code, out, _ = run("reveal", tmp_path, "--anyway")
     assert "edited  solved.json" in out
+
+
+def test_a_verdict_on_a_changed_table_is_not_said_to_be_on_what_was_sealed(tmp_path, monkeypatch):
+    import geomdrap as gd
+
+    monkeypatch.setattr(gd, "diagnose", lambda surface, measurement, **laid: Found("none"), raising=False)
+    run("make", "--effect", "none", "--seed", 1, "-o", tmp_path)
+    table = tmp_path / "measured.csv"
+    sealed = table.read_bytes()
+    table.write_bytes(sealed + b"\n")
+    run("solve", tmp_path)
+    table.write_bytes(sealed)
+    _, out, _ = run("reveal", tmp_path, "--anyway")
+    assert "changed measured.csv: not what was sealed, so nothing is graded" in out
+    assert "since   measured.csv changed after solving\n" in out
+    assert "the verdict is on what was sealed" not in out

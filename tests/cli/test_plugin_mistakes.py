@@ -20,12 +20,25 @@ class Own(gd.Effect):
 """
 
 MISTAKES = {
-    "a key": ("on_fabric", "return fabric.strain_warp * self.values['strian']", "on_fabric, line 8: KeyError: 'strian'"),
+    "a key": (
+        "on_fabric",
+        "return fabric.strain_warp * self.values['strian']",
+        "on_fabric, line 8: KeyError: 'strian'",
+    ),
     "no return": ("on_fabric", "fabric.strain_warp", "returned nothing from on_fabric; it must return the Fabric"),
     "another stage's": ("on_fabric", "return self", "returned Own from on_fabric; it must return the Fabric"),
-    "a surface": ("on_surface", "return fabric.points", "returned ndarray from on_surface; it must return the Surface"),
+    "a surface": (
+        "on_surface",
+        "return fabric.points",
+        "returned ndarray from on_surface; it must return the Surface",
+    ),
     "a placement": ("on_placement", "return 0.5", "returned float from on_placement; it must return the Shift"),
     "a net": ("on_net", "return None", "returned nothing from on_net; it must return the Net"),
+    "a net's shape": (
+        "on_net",
+        "from dataclasses import replace; return replace(fabric, shear=fabric.shear[1:])",
+        "returned a Net from on_net whose shear is (",
+    ),
     "a net's field": ("on_net", "return fabric.sheer", "on_net, line 8: AttributeError"),
 }
 
@@ -40,7 +53,9 @@ def write(tmp_path):
     net = gd.drape(part, "centroid", 0.0, 10.0)
     known = np.isfinite(net.points[..., 0])
     u, v = (a[known] for a in np.meshgrid(net.u, net.v, indexing="ij"))
-    np.savetxt(tmp_path / "m.csv", np.column_stack([u, v, net.points[known]]), delimiter=",", header="u,v,x,y,z", comments="")
+    np.savetxt(
+        tmp_path / "m.csv", np.column_stack([u, v, net.points[known]]), delimiter=",", header="u,v,x,y,z", comments=""
+    )
 
     def call(method: str, body: str, head: str = HEAD) -> Path:
         file = tmp_path / "my.py"
@@ -90,5 +105,7 @@ def test_what_a_plugin_refuses_on_purpose_is_said_in_its_own_words(error_of, wri
 
 def test_a_right_plugin_goes_on_working(run, write):
     write("on_fabric", "return fabric")
-    result = run("drape", "part.obj", "--plugin", "my.py", "--effect", "own:strain=0.01", "--outputs", "none", "--json")
+    result = run(
+        "drape", "part.obj", "--plugin", "my.py", "--effect", "own:strain=0.01", "--outputs", "none", "--json"
+    )
     assert json.loads(result.stdout)["effects"][0]["name"] == "own"

@@ -45,11 +45,23 @@ def test_swapped_warp_and_weft_are_noticed_and_their_noise_is_not_that_of_the_tu
     net, m = case
     c = compare_net(net, _swapped(m))
     (said,) = c.warnings
-    assert "fibres.csv: it looks as if the directions of warp and weft are swapped, or the heading is off by 90" in said
+    assert (
+        "fibres.csv: it looks as if the directions of warp and weft are swapped, or the heading is off by 90" in said
+    )
     for noise in (c.noise_warp, c.noise_weft):
         assert noise.typical < 3.0 * SIGMA
     warnings = prepare(net.surface, _swapped(m), Layup((0.0, 0.0, 80.0), 0.0), sigma_xyz=0.2)[0].warnings
     assert any("are swapped" in w for w in warnings)
+
+
+def test_a_heading_off_by_a_right_angle_is_said_of_the_labels_and_no_swap_of_the_directions(case):
+    net, m = case
+    u, v = (a.ravel() for a in np.meshgrid(np.arange(-36.0, 37.0, 8.0), np.arange(-36.0, 37.0, 8.0)))
+    turned = gd.drape(net.surface, (0.0, 0.0, 80.0), 90.0, 5.0, project=True)
+    (said,) = compare_net(turned, replace(m, u=u, v=v)).warnings
+    assert "turned by 90 degrees" in said
+    (said,) = compare_net(net, _swapped(replace(m, u=u, v=v))).warnings
+    assert "directions of warp and weft are swapped" in said
 
 
 @pytest.mark.parametrize(("family", "other"), [("warp", "weft"), ("weft", "warp")])
@@ -84,6 +96,55 @@ def test_directions_along_the_normal_are_left_out_and_do_not_raise_the_noise_of_
     assert f"fibres.csv: 2 of {len(m)} warp directions (first in line 4)" in c.warnings[0]
     assert np.isnan(c.measurement.warp[[3, 40]]).all()
     assert c.noise_warp.typical == pytest.approx(SIGMA, rel=0.2)
+
+
+FEW = [3, 40, 57]
+
+
+def _with_a_few(m, family):
+    """Labelled marks with the directions of one family at a few of them only."""
+    u, v = (a.ravel() for a in np.meshgrid(np.arange(-36.0, 37.0, 8.0), np.arange(-36.0, 37.0, 8.0)))
+    few = np.full(m.warp.shape, np.nan)
+    few[FEW] = getattr(m, family)[FEW]
+    return replace(m, u=u, v=v, **{family: few})
+
+
+@pytest.mark.parametrize(("family", "other"), [("warp", "weft"), ("weft", "warp")])
+def test_a_few_directions_of_one_family_have_the_noise_of_the_other(case, family, other):
+    net, m = case
+    experiment, notes = prepare(net.surface, _with_a_few(m, family), Layup((0.0, 0.0, 80.0), 0.0), sigma_xyz=0.2)
+    (said,) = [n for n in notes if f"direction of the {family}" in n]
+    assert f"that of the {other}: there are too few directions of the {family}" in said
+    assert float(said.split(" deg")[0].split()[-1]) == pytest.approx(SIGMA, rel=0.2)
+    assert experiment.mask[:, experiment.channels.index(family)].sum() == len(FEW)
+    assert np.isfinite(experiment.noise).all()
+
+
+def test_a_few_directions_whose_noise_nothing_says_are_left_out_and_a_warning_says_so(case):
+    net, m = case
+    alone = replace(_with_a_few(m, "warp"), weft=None)
+    experiment, _ = prepare(net.surface, alone, Layup((0.0, 0.0, 80.0), 0.0), sigma_xyz=0.2)
+    (said,) = [w for w in experiment.warnings if "left out" in w]
+    assert (
+        "fibres.csv: there are too few directions of the warp to read their noise from them, and they are left out"
+        in said
+    )
+    assert "give it (--sigma-direction)" in said
+    assert "warp" not in experiment.channels
+    assert experiment.measurement.warp is None
+    told, _ = prepare(net.surface, alone, Layup((0.0, 0.0, 80.0), 0.0), sigma_xyz=0.2, sigma_direction=SIGMA)
+    assert told.mask[:, told.channels.index("warp")].sum() == len(FEW)
+
+
+def test_upright_warp_but_for_a_few_rows_does_not_end_the_diagnosis(case):
+    net, m = case
+    table = _with_a_few(m, "warp")
+    upright = np.where(np.isfinite(table.warp), table.warp, [0.0, 0.0, 1.0])
+    inner = np.hypot(table.u, table.v) < 30.0
+    table = replace(table, warp=upright).take(inner | np.isin(np.arange(len(m)), FEW))
+    experiment, notes = prepare(net.surface, table, Layup((0.0, 0.0, 80.0), 0.0), sigma_xyz=0.2)
+    assert any("point out of the part" in w for w in experiment.warnings)
+    assert any("too few directions of the warp" in n for n in notes)
 
 
 def test_wild_warp_does_not_raise_the_noise_of_the_weft(case):

@@ -86,10 +86,32 @@ def test_a_whole_line_of_marks_labelled_one_off_is_named_and_set_apart(case, fix
     fit = {"u": (-way, 0), "v": (0, -way)}[along]
     said = [w for w in c.warnings if "seem" in w]
     assert said == [
-        f"the {predicted.sum()} marks with {fixed} = 32 mm: all labels of this line seem to be off; they fit "
-        f"{fit[0]:+d} along u and {fit[1]:+d} along v (in marks)"
+        f"the marks with {fixed} = 32 mm: {predicted.sum()} of {predicted.sum()} labels of this line seem to be off; "
+        f"they fit {fit[0]:+d} along u and {fit[1]:+d} along v (in marks)"
     ]
     assert c.scores.position.robust_rms < 1.0
+
+
+@pytest.mark.parametrize("after", [-64.0, -16.0])
+def test_the_right_marks_before_one_that_was_skipped_are_kept(case, after):
+    net, m = case
+    line = np.round(m.v) == 32.0
+    wrong = line & (m.u > after)
+    c = compare_net(net, replace(m, u=m.u + 16.0 * wrong), sigma_xyz=SIGMA)
+    off = [o for o in c.outliers if o.kind == "position"]
+    assert {o.row for o in off} == set(np.flatnonzero(wrong & c.used).tolist())
+    (said,) = [w for w in c.warnings if "seem" in w]
+    assert f"v = 32 mm: {len(off)} of {(line & c.used).sum()} labels of this line seem to be off; they fit -1" in said
+    assert len(off) < (line & c.used).sum()
+
+
+def test_the_size_of_a_mark_of_a_line_is_what_it_is_off_the_lines_beside():
+    surface, m, laid = measured("steering")  # off by up to 13 mm itself
+    line = np.round(m.v) == 32.0
+    c = gd.compare(surface, replace(m, u=m.u + 16.0 * line), **laid)
+    size = np.array([o.size for o in c.outliers if o.kind == "position"])
+    assert len(size) == (line & c.used).sum()
+    assert np.abs(size - 16.0).max() < 4.0
 
 
 @pytest.mark.parametrize("wrong", [None, 32.0, -48.0])
@@ -154,7 +176,9 @@ def test_where_labels_and_points_agree_either_the_part_or_all_of_the_table_is_in
 
 
 @pytest.mark.parametrize(("factor", "refused"), [(1.0, False), (1.0 / 25.4, True)])
-def test_on_a_flat_part_a_small_table_lies_on_it_in_several_units_which_is_said_and_a_tiny_one_refused(factor, refused):
+def test_on_a_flat_part_a_small_table_lies_on_it_in_several_units_which_is_said_and_a_tiny_one_refused(
+    factor, refused
+):
     plate = gd.Surface([[-100.0, -100, 0], [100, -100, 0], [100, 100, 0], [-100, 100, 0]], [[0, 1, 2], [0, 2, 3]])
     u, v = (a.ravel() for a in np.meshgrid(*2 * [np.linspace(-11.0, 11.0, 9)]))
     u, v = factor * u, factor * v

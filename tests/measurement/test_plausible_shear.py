@@ -15,7 +15,13 @@ READ = ANGLES + np.random.default_rng(1).normal(0.0, 1.0, 40)
 
 @pytest.mark.parametrize(
     ("measured", "words"),
-    [(READ, None), (-READ, "the other sign"), (np.radians(READ), "in radians"), (0.3 * READ, None), (READ[::-1], None)],
+    [
+        (READ, None),
+        (-READ, "the other sign"),
+        (np.radians(READ), "in radians"),
+        (0.3 * READ, None),
+        (READ[::-1], None),
+    ],
 )
 def test_shear_of_the_other_sign_or_in_radians_is_noticed(measured, words):
     said = check_shear(measured, ANGLES, "table.csv")
@@ -32,6 +38,13 @@ def test_shear_without_a_sign_is_noticed():
     one_way = np.abs(ANGLES)  # a ply that shears one way only is no mistake, nor one whose sign is that of the net
     assert check_shear(np.abs(READ), one_way, "t") == ()
     assert check_shear(np.abs(np.random.default_rng(2).normal(0.0, 0.6, 40)), ANGLES, "t") == ()
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("offset", [4.0, -4.0])
+def test_shear_of_one_sign_that_follows_the_prediction_has_its_sign(seed, offset):
+    small = np.random.default_rng(seed).uniform(-3.0, 3.0, 200)
+    assert check_shear(small + offset, small, "t") == ()
 
 
 def test_too_few_angles_or_equal_ones_say_nothing():
