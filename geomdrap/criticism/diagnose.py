@@ -17,9 +17,10 @@ from geomdrap.criticism.cleaned import cleaned, outliers_of
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
 from geomdrap.criticism.ended import WORTH, End, chosen, ended, leaves, left_over
 from geomdrap.criticism.evidence import Evidence, says_the_same
-from geomdrap.criticism.experiment import Experiment, Layup, flatten
+from geomdrap.criticism.experiment import Experiment, flatten
 from geomdrap.criticism.final import said_of_coarser
 from geomdrap.criticism.fitted_on import refit
+from geomdrap.criticism.layup import Layup
 from geomdrap.criticism.leftover import Leftover
 from geomdrap.criticism.likelihood import Scatter
 from geomdrap.criticism.locked import locks

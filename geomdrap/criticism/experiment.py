@@ -20,8 +20,8 @@ from geomdrap.fishnet.relax_net import UNREST
 from geomdrap.fishnet.sway import swayed
 
 if TYPE_CHECKING:
+    from geomdrap.criticism.layup import Layup
     from geomdrap.criticism.likelihood import Judge
-    from geomdrap.fishnet.seed import Origin
     from geomdrap.measurement import Measurement
     from geomdrap.surface import Surface
 
@@ -32,31 +32,6 @@ ALIKE = 0.3  # of their typical sizes: values differ by less where a net is rela
 HARDLY_DIFFERENT = 0.15  # likewise, where what a coarse net gets wrong is the same
 TOP = 97.0  # percentile of the shear that counts as the largest
 FINE, COARSE = 7000, 900  # nodes of the net, for what costs milliseconds and for what costs seconds
-
-
-@dataclass(frozen=True)
-class Layup:
-    """How the ply is believed to lie: seed, heading (degrees), reference direction, and the pitch (mm) of the model.
-
-    ``project`` allows a seed further from the part than a pitch.
-    """
-
-    origin: Origin
-    angle: float
-    reference: tuple[float, float, float] | None = None
-    pitch: float | None = None
-    project: bool = True
-
-    def as_meant(self) -> dict[str, str | float | tuple[float, ...]]:
-        """Origin, heading and reference as a model file holds them."""
-        origin = self.origin
-        if isinstance(origin, (int, np.integer)):
-            origin = f"vertex:{origin}"
-        out: dict[str, str | float | tuple[float, ...]] = {
-            "origin": origin if isinstance(origin, str) else tuple(float(x) for x in origin),
-            "angle": float(self.angle),
-        }
-        return out if self.reference is None else {**out, "reference": tuple(float(x) for x in self.reference)}
 
 
 @dataclass(frozen=True, eq=False)

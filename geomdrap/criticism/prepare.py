@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.criticism.cleaned import POSITION, spoilt
-from geomdrap.criticism.experiment import CHANNELS, COARSE, FINE, Experiment, Layup, flatten, predicted
+from geomdrap.criticism.experiment import CHANNELS, COARSE, FINE, Experiment, flatten, predicted
+from geomdrap.criticism.layup import Layup
 from geomdrap.criticism.smooth import note_on
 from geomdrap.errors import MeasurementError
 from geomdrap.measurement.local import FEWEST

@@ -10,7 +10,7 @@ import pytest
 import geomdrap as gd
 from geomdrap.blind import make, unseal
 from geomdrap.criticism.before_after import before_and_after
-from geomdrap.criticism.experiment import Layup
+from geomdrap.criticism.layup import Layup
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.story import placement_sentence, table_rows
 

@@ -12,9 +12,10 @@ import pytest
 
 import geomdrap as gd
 from geomdrap.criticism.evidence import Evidence
-from geomdrap.criticism.experiment import Experiment, Layup
+from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.fitted_on import doubted_for_facets, doubted_for_pitch, refined
+from geomdrap.criticism.layup import Layup
 from geomdrap.criticism.likelihood import NO_SCATTER
 from geomdrap.criticism.model import Fitted, Model
 from geomdrap.criticism.prepare import prepare

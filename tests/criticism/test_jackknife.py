@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geomdrap.criticism.experiment import Experiment, Layup
+from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.holdout import blocks_of
 from geomdrap.criticism.jackknife import jackknifed, widened
+from geomdrap.criticism.layup import Layup
 from geomdrap.criticism.likelihood import NO_SCATTER, deviations
 from geomdrap.criticism.model import Fitted, Model
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from geomdrap.criticism.evidence import Evidence
-from geomdrap.criticism.experiment import Experiment, Layup
+from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fit import Fit
+from geomdrap.criticism.layup import Layup
 from geomdrap.criticism.likelihood import NO_SCATTER
 from geomdrap.criticism.locked import doubted, locks
 from geomdrap.criticism.model import Fitted, Model

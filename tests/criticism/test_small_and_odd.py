@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import geomdrap as gd
 from geomdrap.criticism.compare import compare_net
-from geomdrap.criticism.experiment import Layup
+from geomdrap.criticism.layup import Layup
 from geomdrap.criticism.prepare import prepare
 from geomdrap.export.compare_json import as_dict
 from geomdrap.export.compare_table import as_text

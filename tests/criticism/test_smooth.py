@@ -8,7 +8,7 @@ from made_parts import cube
 
 import geomdrap as gd
 from geomdrap.criticism import smooth
-from geomdrap.criticism.experiment import Layup
+from geomdrap.criticism.layup import Layup
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.smooth import smoothed
 

@@ -9,7 +9,7 @@ import pytest
 
 import geomdrap as gd
 from geomdrap.criticism.compare import compare_net
-from geomdrap.criticism.experiment import Layup
+from geomdrap.criticism.layup import Layup
 from geomdrap.criticism.prepare import prepare
 from geomdrap.measurement.noise import noise_of_directions
 from geomdrap.measurement.upright import without_upright
