@@ -15,7 +15,7 @@ import numpy as np
 
 from geomdrap.criticism.cleaned import cleaned, outliers_of
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
-from geomdrap.criticism.ended import WORTH, End, chosen, ended, leaves, left_over
+from geomdrap.criticism.ended import WORTH, End, at_an_end, chosen, ended, leaves, left_over
 from geomdrap.criticism.evidence import Evidence, says_the_same
 from geomdrap.criticism.experiment import Experiment, flatten
 from geomdrap.criticism.final import said_of_coarser
@@ -171,7 +171,7 @@ def _verdict(end: End) -> tuple[str, tuple[str, ...]]:
     if names and len(end.alike) > 1:
         return AMBIGUOUS, (*names[:-1], *end.alike)
     if end.unexplained:
-        return UNKNOWN, tuple(names)
+        return UNKNOWN, () if at_an_end(end.model) else tuple(names)
     if names:
         return "+".join(names), tuple(names)
     if _misplaced(end.experiment, end.model, end.scatter):

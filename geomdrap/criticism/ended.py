@@ -14,7 +14,7 @@ from geomdrap.criticism.jackknife import widened
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
 from geomdrap.criticism.locked import LOCKING, doubted, locks, shear_stops
-from geomdrap.criticism.model import Fitted
+from geomdrap.criticism.model import Fitted, Model
 from geomdrap.criticism.search import Round, judge_of
 
 WORTH = 0.03  # of the first misfit: what a further effect must explain
@@ -108,4 +108,13 @@ def ended(meant: Experiment, rounds: Sequence[Round], done: Callable[[str], None
     if unexplained and len(alike) == 1:
         others = alike_in_what_they_leave(rounds[len(names) - 1].evidence)
         alike = others if names[-1] in others else alike
+    if at_an_end(model):
+        alike, unexplained = (), True
     return End(experiment, rounds, names, alike, near, model, scatter, left, unexplained)
+
+
+def at_an_end(model: Fitted) -> bool:
+    """Whether the placement lies where its range ends: the ply is then not where this search can find it."""
+    low, high = Model(()).bounds
+    own = model.values[: len(low)]
+    return bool(((own <= low) | (own >= high)).any())

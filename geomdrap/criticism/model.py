@@ -149,9 +149,8 @@ class Predictor:
 
     def beside(self, values: np.ndarray, step: np.ndarray) -> np.ndarray | None:
         """What a step (p,) from values (p,) changes to first order, None where that takes predictions."""
-        near, there = (self.model.built(v) for v in (values, values + NEAR * step))
         try:
-            change = self.experiment.beside(near, there)
+            change = self.experiment.beside(*(self.model.built(v) for v in (values, values + NEAR * step)))
         except PluginError:
             raise
         except GeomdrapError:  # the prediction says why

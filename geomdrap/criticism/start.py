@@ -152,7 +152,8 @@ def start_values(
         # both signs, a slope at nothing: the linear fit is the start
         slopes = np.column_stack([s / (q.typical - q.neutral) for s, q in zip(alone, own, strict=True)])
         step = np.linalg.lstsq(np.column_stack([shifts, whiten(slopes)]), whiten(residual), rcond=1e-9)[0]
-        straight = base.values + step[:p], _within(neutral + step[p:], own)
+        low, high = base.model.bounds
+        straight = np.clip(base.values + step[:p], low, high), _within(neutral + step[p:], own)
         if seen is None or not (make(effect).costly and is_astray(base)):
             return np.append(*straight)
         return _best_start(experiment, predict, whiten, base, [straight, *_turned(base, seen.values, turns)])

@@ -75,7 +75,9 @@ def hints_for(
 
 def misplaced(experiment: Experiment, placement: Sequence[Value]) -> list[str]:
     """What to check where the ply seems to lie further from its place than a careful lay-up leaves it."""
-    far = [v for v, most in zip(placement, FAR_ASTRAY, strict=True) if abs(v.value) > most + 1.96 * v.sigma]
+    limits = zip(placement, FAR_ASTRAY, strict=True)
+    # at the end of its range a value is not seen, and as far off as can be
+    far = [v for v, most in limits if abs(v.value) > most + (1.96 * v.sigma if np.isfinite(v.sigma) else 0.0)]
     if not far:
         return []
     where = " and ".join(f"{v.name} = {v.value:.3g} {v.unit}" for v in far)

@@ -9,12 +9,15 @@ import pytest
 
 from geomdrap.criticism import search
 from geomdrap.criticism.cleaned import cleaned, spoilt
-from geomdrap.criticism.diagnose import _teller
+from geomdrap.criticism.diagnose import _teller, _verdict
+from geomdrap.criticism.diagnosis import Value
+from geomdrap.criticism.ended import at_an_end
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.fitted_on import again, further
-from geomdrap.criticism.model import Fitted, Look, Model, add_effect
+from geomdrap.criticism.model import Fitted, Look, Model, Predictor, add_effect
 from geomdrap.criticism.start import Glance, glance, start_values
+from geomdrap.criticism.words import misplaced
 from geomdrap.measurement.outliers import Outlier
 
 POINTS = 60
@@ -265,3 +268,33 @@ def test_a_second_search_knows_each_effect_once(monkeypatch):
     monkeypatch.setattr(module, "conclude", lambda *_: None)
     module.diagnose(None, None)
     assert asked == [[], [(), ("slip",), ("slip", "locking")]]
+
+
+def test_a_slope_where_nothing_can_be_drawn_is_left_to_the_prediction():
+    """A linear start may lie beyond what the placement can be: a diagnosis ended in an EffectError."""
+    never = SimpleNamespace(beside=lambda effects, others: pytest.fail("such a ply cannot be"))
+    predict = Predictor(never, Model(("shear-stiffness",)))
+    assert predict.beside(np.array([0.0, 0.0, 83.0, 0.003]), np.array([0.0, 0.0, 0.1, 0.0])) is None
+
+
+def test_a_linear_start_keeps_to_what_the_placement_can_be():
+    measured = PLACES @ np.array([0.0, 0.0, 90.0]) + AT[:, 0] ** 2
+
+    def predict(v):
+        return PLACES @ v[:3] + v[3] * AT[:, 0] ** 2 + v[4] * AT[:, 1] ** 2
+
+    experiment = SimpleNamespace(measured=measured, top_shear=30.0)
+    start = start_values(experiment, predict, whiten, base_at((0.0, 0.0, 0.0), measured), "yarn-extension")
+    assert start[2] == 45.0
+
+
+@pytest.mark.parametrize(("dangle", "lost"), [(44.0, False), (45.0, True), (-45.0, True)])
+def test_a_ply_at_the_end_of_where_it_is_looked_for_is_not_found(dangle, lost):
+    """A ply that had turned by far more was called locked, at 167 times the noise."""
+    model = Fitted(Model(("locking",)), Fit(np.array([1.0, 2.0, dangle, 20.0]), np.zeros(1), np.zeros((1, 4)), 0.0))
+    assert at_an_end(model) is lost
+    end = SimpleNamespace(names=["locking"], alike=(), unexplained=True, model=model)
+    assert _verdict(end) == ("unknown", () if lost else ("locking",))
+    placement = [Value("du", 1.0, 0.1, "mm"), Value("dv", 2.0, 0.1, "mm"), Value("dangle", dangle, np.inf, "deg")]
+    bare = SimpleNamespace(measurement=SimpleNamespace(u=None, v=None))
+    assert "dangle" in misplaced(bare, placement)[0]
