@@ -6,11 +6,10 @@ half a turn of faces or more on either hand.
 
 from __future__ import annotations
 
-import importlib
-
 import numpy as np
 from numba import njit
 
+from geomdrap.fishnet.laid_down import SPREAD
 from geomdrap.fishnet.pivot import vertex_between
 from geomdrap.geodesic.mesh import mesh_of
 from geomdrap.geodesic.unfold import shoot
@@ -107,8 +106,7 @@ def all_misses(row, link, frames, faces, starts, far_faces, targets, length):
 
 def side_misses(net):
     """For each side of each valid cell, how far from one node the best line of a pitch from the other ends, mm."""
-    spread = importlib.import_module("geomdrap.fishnet.drape").SPREAD  # the name is the function's as well
-    mesh = mesh_of(net.surface.lidded, spread * net.pitch)
+    mesh = mesh_of(net.surface.lidded, SPREAD * net.pitch)
     warp = np.zeros(net.face.shape, bool)
     weft = np.zeros(net.face.shape, bool)
     warp[:-1, :-1] |= net.cell_valid
