@@ -55,7 +55,7 @@ def gone_along(start: np.ndarray, net: Net, near: Net) -> np.ndarray:
 
     assert near.moved is not None
     across = _between(near.moved.swapaxes(0, 1), net.v, near.v).swapaxes(0, 1)
-    moved = _between(across, net.u, near.u) @ (_frame(near).T @ _frame(net))
+    moved = _between(across, net.u, near.u) @ (frame(near.warp0, near.normal0).T @ frame(net.warp0, net.normal0))
     known = np.isfinite(moved - start).all(axis=2)
     if not known.any():
         return start
@@ -72,9 +72,11 @@ def gone_along(start: np.ndarray, net: Net, near: Net) -> np.ndarray:
     return np.asarray(turned + more)
 
 
-def _frame(net: Net) -> np.ndarray:
-    """Orthonormal vectors (3, 3) at the seed: the warp, across it, and the normal."""
-    return np.array([net.warp0, np.cross(net.normal0, net.warp0), net.normal0])
+def frame(warp: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Orthonormal vectors (3, 3) at a seed: the warp across the unit normal, across both, and the normal."""
+    across = np.cross(normal, warp)
+    across /= np.linalg.norm(across)
+    return np.array([np.cross(across, normal), across, normal])
 
 
 def _turned(points: np.ndarray, some: np.ndarray, there: np.ndarray) -> np.ndarray:

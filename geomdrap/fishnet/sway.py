@@ -15,7 +15,7 @@ import numpy as np
 from geomdrap.fishnet.dissection import dissect
 from geomdrap.fishnet.relax import Relaxed, placed
 from geomdrap.fishnet.relax_equations import equations_at, newton_step
-from geomdrap.fishnet.relax_net import as_net
+from geomdrap.fishnet.relax_net import as_net, frame
 from geomdrap.fishnet.relax_problem import law_of, needs_no_hold
 from geomdrap.fishnet.relax_surface import stand
 
@@ -38,7 +38,7 @@ def swayed(near: Net, start: Start) -> Net | None:
     laid, problem, found = near.balance
     # of the rounded part: facets beside each other are at degrees, with which the far end would leave the part
     normals = stand(problem.surface, np.array([laid.origin, start.seed.point])).normal
-    turn = _frame(laid.warp0, normals[0]).T @ _frame(start.seed.warp, normals[1])
+    turn = frame(laid.warp0, normals[0]).T @ frame(start.seed.warp, normals[1])
     carried = start.seed.point + (np.concatenate((found.footing.point, problem.held)) - laid.origin) @ turn
     there = replace(
         problem,
@@ -67,10 +67,3 @@ def _alike(one: Fabric, other: Fabric) -> bool:
     """Whether fabrics differ in the size of their stiffness only."""
     kinds = [[f.relaxes, needs_no_hold(f), bool(f.bending_length)] for f in (one, other)]
     return kinds[0] == kinds[1] and one.relaxes and replace(one, **LAW) == replace(other, **LAW)  # type: ignore[arg-type]
-
-
-def _frame(warp: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Orthonormal vectors (3, 3): the warp in the tangent plane, across it, and the normal."""
-    across = np.cross(normal, warp)
-    across /= np.linalg.norm(across)
-    return np.array([np.cross(across, normal), across, normal])
