@@ -106,11 +106,13 @@ def _labels_agree(measurement: Measurement, factor: float) -> bool:
 def looks_wrong(net: Net, measurement: Measurement, found: Matched) -> tuple[str, ...]:
     """Warnings where labels, directions or shear angles are probably others than the table says.
 
-    Directions are held against those predicted at the labels, so that of wrong labels they say nothing.
+    Directions and shear are held against those predicted at the labels: where these are wrong they say nothing.
     """
     labels = check_labels(net, measurement)
-    directions = () if labels else check_directions(measurement, found)
-    return (*labels, *directions, *check_shear(measurement.shear, found.shear, measurement.source))
+    return labels or (
+        *check_directions(measurement, found),
+        *check_shear(measurement.shear, found.shear, measurement.source),
+    )
 
 
 def check_labels(net: Net, measurement: Measurement) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ import geomdrap as gd
 from geomdrap.criticism.compare import compare_net
 from geomdrap.measurement.match import match
 from geomdrap.measurement.outliers import find_outliers
-from geomdrap.measurement.plausible import check_labels, require_on_part
+from geomdrap.measurement.plausible import check_labels, looks_wrong, require_on_part
 
 SIGMA = 0.2
 
@@ -143,6 +143,15 @@ def test_swapped_and_mirrored_labels_are_noticed(case, matrix, words):
     warnings = check_labels(net, replace(m, u=u, v=v))
     assert len(warnings) == 1
     assert words in warnings[0]
+
+
+def test_of_mirrored_labels_shear_is_not_judged_as_well(case):
+    """Held against what is predicted at the wrong labels it was said to have the other sign."""
+    net, m = case
+    mirrored = replace(m, v=-m.v)
+    assert m.shear is not None
+    (said,) = looks_wrong(net, mirrored, match(net, mirrored))
+    assert "v runs the other way" in said
 
 
 def test_labels_counted_from_another_mark_are_noticed(case):
