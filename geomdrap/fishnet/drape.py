@@ -92,22 +92,22 @@ def _march_sliding(
     grid = _march(mesh, start, extent, pitch, fabric, 0.0, guides)
     if fabric.slip != 0.0:
         for _ in range(AXIS_ROUNDS):
-            if _off_on_axis(grid, extent, fabric) < AXIS_STRAIN:
+            strain, off = _asked_on_axis(grid, extent, fabric)
+            if off < AXIS_STRAIN:
                 break
-            strain = strain_on_axis(grid, extent.west, fabric.slip)
             grid = _march(mesh, start, extent, pitch, fabric, strain, guides)
     return grid
 
 
-def _off_on_axis(grid: Grid, extent: Extent, fabric: Fabric) -> float:
-    """By how much strain the weft generator is off what the cells beside it ask for."""
+def _asked_on_axis(grid: Grid, extent: Extent, fabric: Fabric) -> tuple[np.ndarray, float]:
+    """Strains (nv,) of the weft generator that the cells beside it ask for, and how far it is off them at most."""
     strain = strain_on_axis(grid, extent.west, fabric.slip)
-    return float(np.abs(strain - grid.node[extent.west, :, STRAIN]).max())
+    return strain, float(np.abs(strain - grid.node[extent.west, :, STRAIN]).max())
 
 
 def _unsettled(grid: Grid, extent: Extent, fabric: Fabric) -> tuple[str, ...]:
     """A warning where weft sides grow with the shear, and the shear with them, without an end."""
-    if fabric.slip == 0.0 or not (off := _off_on_axis(grid, extent, fabric)) > UNSETTLED:
+    if fabric.slip == 0.0 or not (off := _asked_on_axis(grid, extent, fabric)[1]) > UNSETTLED:
         return ()
     return (
         f"slip of {fabric.slip:g}: weft sides at the origin and the shear beside them do not settle (they still "
