@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geomdrap.criticism.channel_noise import noise_of_channels
 from geomdrap.criticism.cleaned import POSITION, spoilt
 from geomdrap.criticism.experiment import CHANNELS, COARSE, FINE, Experiment, flatten, predicted
 from geomdrap.criticism.layup import Layup
 from geomdrap.criticism.smooth import note_on
 from geomdrap.errors import MeasurementError
-from geomdrap.measurement.local import FEWEST
 from geomdrap.measurement.marks import mark_spacing, pitch_for_marks
 from geomdrap.measurement.match import Matched, match
-from geomdrap.measurement.noise import REPEATS, RESIDUAL, Noise, noise_of, noise_of_directions, repeats_of
 from geomdrap.measurement.outliers import find_outliers
 from geomdrap.measurement.plausible import looks_wrong, require_on_part
 from geomdrap.measurement.upright import without_upright
@@ -26,10 +25,6 @@ if TYPE_CHECKING:
 
 FEWEST_PLACES = 6  # three values of the placement, up to two of an effect, and something to hold them against
 MOST_POINTS = 400  # with a dense covariance; more points are thinned out evenly
-OPTIONS = {"position": "--sigma-xyz", "shear": "--sigma-shear", "direction": "--sigma-direction"}
-UNITS = {"position": "mm", "shear": "deg", "direction": "deg"}
-NOT_POSITION = {"shear": "shear", "warp": "direction", "weft": "direction"}
-_OTHER = {"warp": "weft", "weft": "warp"}
 
 
 def prepare(
@@ -56,20 +51,7 @@ def prepare(
     measurement = thinned(measurement, notes)
     lay = replace(layup, pitch=None)
     pitches = _pitches(surface, measurement, layup)
-    empty = np.zeros(0)
-    bare = Experiment(
-        surface,
-        measurement,
-        lay,
-        np.zeros((0, 2)),
-        np.zeros((0, 3, 3)),
-        (),
-        np.zeros((0, 0), bool),
-        empty,
-        empty,
-        pitches,
-    )
-    net = bare.draped()
+    net = _without_values(surface, measurement, lay, pitches).draped()
     found = match(net, measurement)
     if not found.used.any():
         raise MeasurementError(
@@ -84,7 +66,7 @@ def prepare(
     mask = np.isfinite(values) & np.isfinite(table) & np.isfinite(at).all(axis=1)[:, None]
     _require_places(measurement, at, mask)
     given = (sigma_xyz, sigma_shear, sigma_direction)
-    sigma, more, doubts = _noise(measurement, channels, values, values - table, at, given)
+    sigma, more, doubts = noise_of_channels(measurement, channels, values, values - table, at, given)
     warnings += doubts
     known = np.isfinite(sigma).any(axis=0)
     if not known.all():
@@ -101,6 +83,14 @@ def prepare(
         surface, measurement, lay, at, frames, channels, mask, noise, values, pitches, tuple(warnings)
     )
     return experiment, (*notes, *more)
+
+
+def _without_values(
+    surface: Surface, measurement: Measurement, layup: Layup, pitches: tuple[float, float]
+) -> Experiment:
+    """An experiment that knows how to drape, and nothing yet of what was measured."""
+    none, nowhere = np.zeros(0), (np.zeros((0, 2)), np.zeros((0, 3, 3)))
+    return Experiment(surface, measurement, layup, *nowhere, (), np.zeros((0, 0), bool), none, none, pitches)
 
 
 def _require_places(measurement: Measurement, at: np.ndarray, mask: np.ndarray) -> None:
@@ -148,65 +138,6 @@ def measured_table(
     return tuple(table), np.column_stack(list(table.values()))
 
 
-def _noise(
-    measurement: Measurement,
-    channels: tuple[str, ...],
-    values: np.ndarray,
-    residual: np.ndarray,
-    at: np.ndarray,
-    given: tuple[float | None, float | None, float | None],
-) -> tuple[np.ndarray, tuple[str, ...], tuple[str, ...]]:
-    """Noise (n, c) of every value, notes and warnings; ``given`` for positions, shear and directions.
-
-    NaN for directions that are too few to say it. Raises MeasurementError where else there is no way to know it.
-    """
-    sigma = np.full(values.shape, np.nan)
-    repeats = repeats_of(measurement)
-    notes: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
-    columns = (measurement.sigma_xyz, measurement.sigma_shear, measurement.sigma_direction)
-    shear = given[1]
-    few = []
-    for kind, own in _alike(channels):
-        k = list(OPTIONS).index(kind)
-        if kind == "direction":
-            noise, more = noise_of_directions(columns[k], given[k], shear, residual[:, own], repeats, at)
-        else:
-            name = OPTIONS[kind].removeprefix("--").replace("-", "_")
-            noise, more = noise_of(name, columns[k], given[k], values[:, own], repeats, residual[:, own], at)
-        warnings += tuple(words for words in more if words not in warnings)
-        if kind == "direction" and noise.sigma is None and _are_few(residual[:, own[0]], at):
-            few.append(own[0])
-            continue
-        sigma[:, own] = _known(noise, kind, measurement)[:, None]
-        shear = noise.typical if kind == "shear" else shear
-        read = noise.source in (REPEATS, RESIDUAL)
-        what = f"{kind} of the {channels[own[0]]}" if kind == "direction" else kind
-        notes += (f"noise of the {what} {noise.typical:.2g} {UNITS[kind]}, from {noise.source}",) if read else ()
-    for k in few:
-        other = channels.index(_OTHER[channels[k]]) if _OTHER[channels[k]] in channels else k
-        sigma[:, k] = np.sqrt(np.mean(sigma[:, other] ** 2))
-        said = _words_on_few(measurement, channels[k], sigma[0, k])
-        notes, warnings = (notes, (*warnings, said)) if np.isnan(sigma[0, k]) else ((*notes, said), warnings)
-    return sigma, notes, warnings
-
-
-def _are_few(residual: np.ndarray, at: np.ndarray) -> bool:
-    """Whether residuals (n,) at places ``at`` (n, 2) are too few for differences of neighbours."""
-    return int((np.isfinite(residual) & np.isfinite(at).all(axis=1)).sum()) < FEWEST
-
-
-def _words_on_few(measurement: Measurement, family: str, sigma: float) -> str:
-    """What the noise of a few directions of a family is taken to be, degrees, or that they are left out (NaN)."""
-    if np.isfinite(sigma):
-        of = f"{sigma:.2g} deg, that of the {_OTHER[family]}"
-        return f"noise of the direction of the {family} {of}: there are too few directions of the {family}"
-    return (
-        f"{measurement.source}: there are too few directions of the {family} to read their noise from them, and they "
-        "are left out; give it (--sigma-direction)"
-    )
-
-
 def _with_known_noise(
     channels: tuple[str, ...], known: np.ndarray, measurement: Measurement
 ) -> tuple[tuple[str, ...], Measurement]:
@@ -214,23 +145,6 @@ def _with_known_noise(
     held = tuple(name for name, told in zip(channels, known, strict=True) if told)
     warp, weft = (getattr(measurement, name) if name in held else None for name in ("warp", "weft"))
     return held, replace(measurement, warp=warp, weft=weft)
-
-
-def _alike(channels: tuple[str, ...]) -> list[tuple[str, list[int]]]:
-    """Kinds of channels that are of one noise, with the channels' numbers: positions, shear, warp, weft."""
-    places = [k for k, name in enumerate(channels) if name not in NOT_POSITION]
-    others = [(NOT_POSITION[name], [k]) for k, name in enumerate(channels) if name in NOT_POSITION]
-    return [*([("position", places)] if places else []), *others]
-
-
-def _known(noise: Noise, kind: str, measurement: Measurement) -> np.ndarray:
-    """Standard deviations (n,); raises MeasurementError where there is no way to know them."""
-    if noise.sigma is None:
-        raise MeasurementError(
-            f"{measurement.source}: there are too few points to read the noise of the {kind} from them; give it "
-            f"({OPTIONS[kind]})"
-        )
-    return noise.sigma
 
 
 def _by_kind(channels: tuple[str, ...], sigma: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None]:
