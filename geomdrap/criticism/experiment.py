@@ -12,6 +12,7 @@ import numpy as np
 
 from geomdrap.criticism.kept import kept
 from geomdrap.criticism.smooth import Split, smoothed
+from geomdrap.effects.crossing_slip import CrossingSlip
 from geomdrap.fishnet import Effect, Fabric, Net, drape
 from geomdrap.fishnet.effect import fabric_with, in_order, net_with, surface_with
 from geomdrap.fishnet.held_warp import HeldWarp
@@ -141,12 +142,28 @@ class Experiment:
         """
         if not any(e.costly for e in others):
             return None
+        if not fabric_with(others, Fabric()).relaxes:
+            return self._slid_beside(effects, others)
         near, lay, (surface, acting) = self.draped(effects, self.pitches[1]), self.layup, self._with_hold(others)
         if restless(near):
             return None
         laid = lay.origin, lay.angle, near.pitch, Fabric(), in_order(acting), lay.reference, lay.project
         net = swayed(near, laid_down(surface, *laid))
         return None if net is None else self._flat(net_with(in_order(acting), net)) - self._flat(near)
+
+    def _slid_beside(self, effects: Sequence[Effect], others: Sequence[Effect]) -> np.ndarray | None:
+        """Likewise where crossings slide. How far they do hardly depends on where the ply is laid."""
+        last = [e for e in in_order(others) if e.costly or e.stage == "net"][-1]
+        if not isinstance(last, CrossingSlip) or sum(e.costly for e in others) > 1:
+            return None
+        plain = [[e for e in some if not e.costly] for some in (effects, others)]
+        if _apart(*map(in_order, plain)) > 0.0:
+            own = [[repr_of(e) for e in some if e.costly] for some in (effects, others)]
+            there, here = (self._flat(self.draped(some)) for some in reversed(plain))
+            return there - here if own[0] == own[1] else None
+        near = self.draped(effects, self.pitches[1])
+        net = None if restless(near) else last.beside(near)
+        return None if net is None else self._flat(net) - self._flat(near)
 
     def _draped(self, effects: Sequence[Effect], pitch: float, near: Net | None = None) -> Net:
         lay, (surface, others) = self.layup, self._with_hold(effects)

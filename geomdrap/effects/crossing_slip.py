@@ -7,13 +7,17 @@ from dataclasses import replace
 import numpy as np
 
 from geomdrap.fishnet import Effect, Net, Parameter
-from geomdrap.fishnet.relax import relax
+from geomdrap.fishnet.relax import GOOD_ENOUGH, relax
 from geomdrap.fishnet.relax_energy import Law
-from geomdrap.fishnet.relax_net import as_net, chord_sines
-from geomdrap.fishnet.relax_problem import pose
+from geomdrap.fishnet.relax_net import Balance, as_net, beginning
+from geomdrap.fishnet.relax_problem import Problem, chord_sines, pose
+from geomdrap.fishnet.sway import stepped
 
 SLIDING = 0.02  # what a piece resists changing its length by sliding, as a share of shear
-WHOLE_YARN = (1.0, 1e2, 1e4)  # what a whole yarn resists, raised step by step until it keeps its length
+WHOLE_YARN = 1e4  # what a whole yarn resists: it keeps its length
+SOFTER = (1.0, 1e2)  # of what it resists in the nets on the way to that,
+CLOSE = 1e-2  # whose forces are balanced so far
+ASTRAY = 0.4  # of the way to a net beside another one: further off it is led astray
 
 
 class CrossingSlip(Effect):
@@ -48,17 +52,48 @@ class CrossingSlip(Effect):
 
     def on_net(self, net: Net) -> Net:
         """The net with crossings that have slid; the same net where no shear is beyond the onset."""
+        return self._slid(net)
+
+    def on_net_near(self, net: Net, near: Net) -> Net:
+        """The same net, looked for from where the crossings of one ``near`` have slid, or of a coarser one."""
+        return self._slid(net, near)
+
+    def beside(self, near: Net) -> Net | None:
+        """The net of the ply as it was laid for one ``near``, to first order in how values differ from those there.
+
+        None where no crossing has slid there.
+        """
+        if near.slid is None:
+            return None
+        laid, problem, found = near.slid
+        other = replace(problem, target=self._target(laid, problem))
+        careful, there = (stepped(near.slid, other, found.footing, full) for full in (False, True))
+        if careful is None or there is None:
+            return None
+        # where yarns that keep their lengths are nearly free to go some way, all second derivatives lead far off
+        apart, way = (np.linalg.norm((one.x - careful.x)[problem.nodes]) for one in (there, found))
+        return as_net(laid, problem, there if apart < ASTRAY * way else careful)
+
+    def _slid(self, net: Net, near: Net | None = None) -> Net:
         if not np.nanmax(np.abs(net.cell_shear), initial=0.0) > self.values["onset"]:
             return net
-        problem = pose(net, Law(ratio=1.0, piece=SLIDING))
+        problem = pose(net, Law(ratio=1.0, piece=SLIDING, yarn=WHOLE_YARN))
+        problem = replace(problem, target=self._target(net, problem))
+        found = None
+        if near is not None and near.slid is not None:
+            found = relax(problem, beginning(problem, net, near, near.slid.moved))
+        if found is None or found.unrest > GOOD_ENOUGH:
+            start = problem.footing
+            for stiffness in SOFTER:
+                softer = replace(problem, law=problem.law._replace(yarn=stiffness))
+                start = relax(softer, start, CLOSE).footing
+            found = relax(problem, start)
+        return replace(as_net(net, problem, found), slid=Balance(net, problem, found))
+
+    def _target(self, net: Net, problem: Problem) -> np.ndarray:
+        """Sines of the shear that slip is to leave at the corners of cells."""
         shear = np.nan_to_num(net.cell_shear)
         left = np.abs(shear) - self.values["share"] * np.maximum(np.abs(shear) - self.values["onset"], 0.0)
         relief = np.sin(np.radians(left)) * np.sign(shear) - np.sin(np.radians(shear))
         target = chord_sines(problem.x0, problem.valid) + relief[..., None, None]
-        problem = replace(problem, target=np.where(problem.valid[..., None, None], target, 0.0))
-        start = problem.footing
-        for stiffness in WHOLE_YARN:
-            problem = replace(problem, law=problem.law._replace(yarn=stiffness))
-            found = relax(problem, start)
-            start = found.footing
-        return as_net(net, problem, found)
+        return np.where(problem.valid[..., None, None], target, 0.0)

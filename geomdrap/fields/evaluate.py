@@ -47,7 +47,7 @@ def evaluate(net: Net, limit_angle: float | None = None, progress: Callable[[flo
     checks = check_net(net, trimmed)
     progress(0.95)
     return Drape(
-        net=replace(net, balance=None),  # which is for nets near it, and twice as large
+        net=replace(net, balance=None, slid=None),  # which are for nets near it, and twice as large
         limit_angle=limit,
         **faces,
         flat=flat,

@@ -82,7 +82,7 @@ def drape(
     net = _as_net(start, reach, extent, grid)
     if fabric.relaxes:
         net = relaxed(net, near)
-    return replace(net_with(acting, net), effects=acting, guided=start.guides is not None)
+    return replace(net_with(acting, net, near), effects=acting, guided=start.guides is not None)
 
 
 def _march_sliding(

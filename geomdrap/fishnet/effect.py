@@ -89,6 +89,10 @@ class Effect:
         """The net as it really ends up."""
         return net
 
+    def on_net_near(self, net: Net, near: Net) -> Net:
+        """The same net, which may be looked for from that of a ply much like this one: that takes less time."""
+        return self.on_net(net)
+
 
 def in_order(effects: Sequence[Effect]) -> tuple[Effect, ...]:
     """The effects that change something, in the order in which they act at one stage.
@@ -124,8 +128,8 @@ def fabric_with(effects: Sequence[Effect], fabric: Fabric) -> Fabric:
     return fabric
 
 
-def net_with(effects: Sequence[Effect], net: Net) -> Net:
-    """The net with the effects that act after the drape."""
+def net_with(effects: Sequence[Effect], net: Net, near: Net | None = None) -> Net:
+    """The net with the effects that act after the drape, which may be looked for from that of a ply much like it."""
     for effect in effects:
-        net = effect.on_net(net)
+        net = effect.on_net(net) if near is None else effect.on_net_near(net, near)
     return net

@@ -36,7 +36,7 @@ class Net:
     as they lie, mm; None where all have the length that they have in the flat fabric. ``effects`` are those that
     acted, in their order. ``guided`` says that generators follow curves of the user's. ``moved`` (nu, nv, 3) mm: how
     far nodes have gone to where the energy is least, those beyond the rim too, and ``balance`` what that came from;
-    None for a net that is not relaxed.
+    None for a net that is not relaxed. ``slid``: likewise what crossings that have slid came from.
     ``notes`` say what was chosen, ``warnings`` what the user should look at.
     """
 
@@ -66,6 +66,7 @@ class Net:
     guided: bool = field(default=False)
     moved: np.ndarray | None = field(default=None)
     balance: Balance | None = field(default=None, repr=False)
+    slid: Balance | None = field(default=None, repr=False)
     notes: tuple[str, ...] = field(default=())
     warnings: tuple[str, ...] = field(default=())
 

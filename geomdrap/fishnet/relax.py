@@ -79,8 +79,11 @@ def placed(problem: Problem, nodes: np.ndarray) -> Footing:
     return stand(problem.surface, x, face)
 
 
-def relax(problem: Problem, footing: Footing) -> Relaxed:
-    """Nodes of least energy, from where they stand: ``problem.footing`` is the geometric net."""
+def relax(problem: Problem, footing: Footing, balanced: float = BALANCED) -> Relaxed:
+    """Nodes of least energy, from where they stand: ``problem.footing`` is the geometric net.
+
+    ``balanced`` is the share of the largest forces at a node that may be left.
+    """
     x = problem.on_net(footing.lifted)
     now, damping, stuck = _energy(problem, x, footing), 0.0, 0
     law = problem.law
@@ -96,7 +99,7 @@ def relax(problem: Problem, footing: Footing) -> Relaxed:
         if equations.unrest < best.unrest or now < best.energy * (1.0 - UNEVEN):
             best = Relaxed(x, footing, now, equations.unrest, n)
         patience = LAST_ROUNDS if best.unrest < AT_THE_END else PATIENCE
-        if best.unrest < BALANCED or (best.unrest < GOOD_ENOUGH and stuck > patience) or n - mark.rounds > IDLE:
+        if best.unrest < balanced or (best.unrest < GOOD_ENOUGH and stuck > patience) or n - mark.rounds > IDLE:
             break
         step = newton_step(problem, fronts, equations, damping)
         downhill = float((equations.gradient * step).sum()) < 0.0  # a BLAS product would wake threads that only spin

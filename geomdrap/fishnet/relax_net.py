@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from geomdrap.fishnet.net import Net
     from geomdrap.fishnet.relax import Relaxed
     from geomdrap.fishnet.relax_problem import Problem
+    from geomdrap.fishnet.relax_surface import Footing
 
 
 class Balance(NamedTuple):
@@ -28,6 +29,11 @@ class Balance(NamedTuple):
     laid: Net
     problem: Problem
     found: Relaxed
+
+    @property
+    def moved(self) -> np.ndarray:
+        """How far nodes (nu, nv, 3) have gone to where they came to rest, mm; NaN for those that cannot move."""
+        return self.problem.on_net(self.found.footing.point - self.problem.footing.point, math.nan)
 
 
 def relaxed(net: Net, near: Net | None = None) -> Net:
@@ -39,27 +45,29 @@ def relaxed(net: Net, near: Net | None = None) -> Net:
     if near is None or near.moved is None:
         found = relax(problem, problem.footing)
     else:
-        start = gone_along(problem.on_net(problem.footing.point, math.nan), net, near)
-        found = relax(problem, placed(problem, start))
-    moved = found.footing.point - problem.footing.point
+        found = relax(problem, beginning(problem, net, near, near.moved))
     balance = Balance(net, problem, found)
-    return replace(as_net(net, problem, found), moved=problem.on_net(moved, math.nan), balance=balance)
+    return replace(as_net(net, problem, found), moved=balance.moved, balance=balance)
 
 
-def gone_along(start: np.ndarray, net: Net, near: Net) -> np.ndarray:
+def beginning(problem: Problem, net: Net, near: Net, moved: np.ndarray) -> Footing:
+    """Where nodes of a net stand that have ``moved`` as far as those of a net ``near`` have."""
+    return placed(problem, gone_along(problem.on_net(problem.footing.point, math.nan), net, near, moved))
+
+
+def gone_along(start: np.ndarray, net: Net, near: Net, moved: np.ndarray) -> np.ndarray:
     """Nodes ``start`` (nu, nv, 3) mm of a net, moved as far as those of a net ``near`` have, between its by cubics.
 
     Nodes that the other net has not go with it as a whole, and from there as those nearest to them do.
     """
     from scipy.ndimage import distance_transform_edt
 
-    assert near.moved is not None
-    across = _between(near.moved.swapaxes(0, 1), net.v, near.v).swapaxes(0, 1)
-    moved = _between(across, net.u, near.u) @ (frame(near.warp0, near.normal0).T @ frame(net.warp0, net.normal0))
-    known = np.isfinite(moved - start).all(axis=2)
+    across = _between(moved.swapaxes(0, 1), net.v, near.v).swapaxes(0, 1)
+    away = _between(across, net.u, near.u) @ (frame(near.warp0, near.normal0).T @ frame(net.warp0, net.normal0))
+    known = np.isfinite(away - start).all(axis=2)
     if not known.any():
         return start
-    there = start + moved
+    there = start + away
     turned = _turned(start, start[known], there[known])
     near_to = distance_transform_edt(~known, return_distances=False, return_indices=True)
     more = (there - turned)[tuple(near_to)]

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from geomdrap.fishnet.fabric import Fabric
     from geomdrap.fishnet.laid_down import Start
     from geomdrap.fishnet.net import Net
+    from geomdrap.fishnet.relax_net import Balance
+    from geomdrap.fishnet.relax_problem import Problem
+    from geomdrap.fishnet.relax_surface import Footing
 
 LAW = {name: None for name in ("shear_stiffness", "locking_angle", "shear_asymmetry", "bending_length")}
 
@@ -47,20 +50,31 @@ def swayed(near: Net, start: Start) -> Net | None:
         side=np.cross(start.seed.normal, start.seed.warp),
         footing=found.footing,
     )
-    footing = placed(there, there.on_net(carried[:-2], math.nan))
+    beside = stepped(near.balance, there, placed(there, there.on_net(carried[:-2], math.nan)))
+    return None if beside is None else as_net(replace(laid, fabric=start.fabric), problem, beside)
+
+
+def stepped(rest: Balance, there: Problem, footing: Footing, full: bool = True) -> Relaxed | None:
+    """Where one Newton step leads under another problem ``there``, on the nodes and cells of a net at ``rest``.
+
+    It begins at ``footing``. ``full``: with all second derivatives, not only those that cannot be negative. None
+    where no step can be made.
+    """
+    _, problem, found = rest
     x = found.x.copy()
     x[problem.nodes] = footing.lifted
-    at_rest = equations_at(problem, found.x, found.footing, True)
-    moved = equations_at(there, x, footing, True)
+    at_rest = equations_at(problem, found.x, found.footing, full)
+    moved = equations_at(there, x, footing, full)
     # what is left of the forces where the other net came to rest is none of the difference
     moved = replace(moved, gradient=moved.gradient - at_rest.gradient)
     fronts = dissect(problem.number, len(footing.face), there.law.yarn > 0.0, 2 if there.law.bend > 0.0 else 1)
     step = newton_step(there, fronts, moved, 0.0)
     if not np.isfinite(step).all():
         return None
-    footing = stand(there.surface, footing.point + (moved.bases * step.reshape(-1, 1, 2)).sum(axis=2), footing.face)
+    way = (moved.bases * step.reshape(-1, 1, 2)).sum(axis=2)
+    footing = stand(there.surface, footing.point + way, footing.face)
     x[problem.nodes] = footing.lifted
-    return as_net(replace(laid, fabric=start.fabric), problem, Relaxed(x, footing, math.nan, found.unrest, 1))
+    return Relaxed(x, footing, math.nan, found.unrest, 1)
 
 
 def _alike(one: Fabric, other: Fabric) -> bool:
