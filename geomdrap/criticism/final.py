@@ -12,7 +12,7 @@ import numpy as np
 
 from geomdrap.criticism.evidence import MOST, RIVAL_SHARE, Evidence, rivals
 from geomdrap.criticism.experiment import Experiment, restless
-from geomdrap.criticism.fitted_on import doubted_for_facets, doubted_for_pitch, refined, refit, with_fresh_slopes
+from geomdrap.criticism.fitted_on import doubted_for_facets, doubted_for_pitch, refined, settled
 from geomdrap.criticism.likelihood import Scatter, is_noise
 from geomdrap.criticism.model import Fitted
 from geomdrap.criticism.search import Round, judge_of
@@ -39,9 +39,7 @@ def final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Expe
         before = float((whiten(np.nan_to_num(model.fit.residual)) ** 2).sum())
         kept, model = (finer, better) if better.fit.chi2 <= ELSEWHERE * before else (experiment, model)
         return kept, doubted_for_facets(experiment, model)
-    if scatter.size > 0.0 and whole:
-        model = refit(experiment, whiten, model)
-    model = doubted_for_facets(experiment, with_fresh_slopes(experiment, model))
+    model = doubted_for_facets(experiment, settled(experiment, whiten, model))
     return experiment, doubted_for_pitch(experiment, model) if model.model.effects else model
 
 

@@ -17,7 +17,7 @@ Beside = Callable[[np.ndarray, np.ndarray], np.ndarray | None]
 
 STEPS = 12  # most accepted or refused steps
 FIRST_STEPS = 3  # after which a fit must have come below a chi-square that is asked of it
-SMALL = 0.05  # of chi-square: a step that promises or gains less ends the fit
+SMALL, LOOSE = 0.05, 1.0  # of chi-square: a step that promises or gains less ends a fit, one that is fitted on later
 LEAST_STEP = 1e-3  # of a parameter's own step, in every parameter: less ends the fit, too
 FARTHEST = 100.0  # of a parameter's own step: no further at once, since slopes tell nothing of what is far
 RAGGED = 1.0  # of chi-square: where a step along fresh slopes promises no more and fails, facets decide
@@ -59,7 +59,8 @@ def fit(
     ``steps`` (p,) are the differences with which slopes are taken, where ``slopes`` (m, p) are not given. At
     most ``most`` steps are tried; a fit that is above a chi-square of ``enough`` ``FIRST_STEPS`` after the start, or
     after slopes were taken anew, but at the latest after ``patience`` steps, is given up.
-    A step that promises or gains less than ``small`` of chi-square ends it. ``beside`` as of ``take_slopes``.
+    A step that promises or gains less than ``small`` of chi-square ends it, in units of what the model leaves of each
+    value where that is more than noise: it then counts as noise. ``beside`` as of ``take_slopes``.
     If any are ``lasting``, slopes of the parameters after the first so many are taken anew at the start.
     """
     values = np.clip(np.asarray(start, dtype=float), low, high)
@@ -84,7 +85,8 @@ def fit(
         step = _step(seen, whiten(filled), damping, values, low, high, moves)
         step *= min(1.0, FARTHEST / max(float(np.abs(step / steps).max()), 1e-300))
         foreseen = chi2 - _square(whiten(filled - jacobian @ step))
-        if (np.abs(step) <= LEAST_STEP * steps).all() or foreseen < small:
+        unit = max(1.0, chi2 / len(measured))
+        if (np.abs(step) <= LEAST_STEP * steps).all() or foreseen < small * unit:
             break
         there = predict(values + step)
         new = measured - there
@@ -98,7 +100,7 @@ def fit(
             values, filled, chi2, damping = values + step, new, new_chi2, 0.0
             lost = np.isnan(there)
             fresh, good = False, jacobian
-            if gain < small:
+            if gain < small * unit:
                 break
         elif not fresh:  # the slopes are worn: take them anew, once for each place
             jacobian[:, free] = take_slopes(predict, values, predict(values), steps, low, high, free, beside)[:, free]
@@ -106,7 +108,7 @@ def fit(
         else:
             jacobian = good  # what a refused step has shown, beyond a threshold it may be, is no slope here
             damping = max(4.0 * damping, 0.3)
-            if foreseen < RAGGED or damping > 100.0:
+            if foreseen < RAGGED * unit or damping > 100.0:
                 break
     return Fit(values, np.where(lost, np.nan, filled), jacobian, _square(whiten(np.where(lost, 0.0, filled))))
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.criticism.fit import Fit, fit
+from geomdrap.criticism.fit import LOOSE, Fit, fit
 from geomdrap.criticism.likelihood import is_noise
-from geomdrap.criticism.model import NEARLY, Fitted, Model, Predictor, Whiten
+from geomdrap.criticism.model import CREEP, NEARLY, Fitted, Model, Predictor, Whiten
 from geomdrap.criticism.smooth import note_on
 from geomdrap.effects import make
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 REFINEMENTS = 5  # steps on a finer net
 MORE_STEPS = 18  # of a costly fit, if it is the best
-CREEP = 2e-3  # of its chi-square: steps that gain less do not make it another one
 LESS, FEW = 3.0, 3  # times less than was found is tried, in a few steps
 MOSTLY = 0.9  # of the values: a net that predicts fewer is not compared with another
 
@@ -34,7 +33,7 @@ def further(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     if idle or is_noise(old.fit.chi2, len(old.fit.residual)):
         return old
     way = old.values, model.steps, *model.bounds, old.fit.slopes, MORE_STEPS
-    predict, small = Predictor(experiment, model), CREEP * old.fit.chi2
+    predict, small = Predictor(experiment, model), CREEP * len(old.fit.residual)
     found = fit(predict, experiment.measured, whiten, *way, small=small, beside=predict.beside)
     return Fitted(model, found) if found.chi2 < old.fit.chi2 else old
 
@@ -44,8 +43,25 @@ def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     model = old.model
     predict = Predictor(experiment, model)
     way = old.values, model.steps, *model.bounds, old.fit.slopes
-    fitted = fit(predict, experiment.measured, whiten, *way, beside=predict.beside)
+    fitted = fit(predict, experiment.measured, whiten, *way, small=LOOSE, beside=predict.beside)
     return Fitted(model, fitted)
+
+
+def settled(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
+    """A model that is not costly, fitted to the end under another noise, its slopes by central differences.
+
+    Those of a fit are corrected as it goes; those here are of where it began, and are not corrected by short steps.
+    """
+    model, (low, high) = old.model, old.model.bounds
+    predict, slopes = Predictor(experiment, model), old.fit.slopes.copy()
+    for k, step in enumerate(model.steps):
+        ends = [old.values.copy(), old.values.copy()]
+        ends[0][k] = max(old.values[k] - step, low[k])
+        ends[1][k] = min(old.values[k] + step, high[k])
+        change = (predict(ends[1]) - predict(ends[0])) / (ends[1][k] - ends[0][k])
+        slopes[:, k] = np.where(np.isfinite(change), change, slopes[:, k])
+    found = fit(predict, experiment.measured, whiten, old.values, model.steps, low, high, slopes)
+    return Fitted(model, replace(found, slopes=slopes))
 
 
 def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
@@ -104,20 +120,6 @@ def again(experiment: Experiment, whiten: Whiten, base: Fitted, known: Sequence[
             slopes = np.hstack([base.fit.slopes, trial.fit.slopes[:, own]])
             out.append(replace(trial, fit=Fit(values, base.fit.residual, slopes, base.fit.chi2)))
     return out
-
-
-def with_fresh_slopes(experiment: Experiment, old: Fitted) -> Fitted:
-    """The same model with slopes by central differences where it is now: those of a fit are corrected as it goes."""
-    predict = Predictor(experiment, old.model)
-    low, high = old.model.bounds
-    slopes = old.fit.slopes.copy()
-    for k, step in enumerate(old.model.steps):
-        ends = [old.values.copy(), old.values.copy()]
-        ends[0][k] = max(old.values[k] - step, low[k])
-        ends[1][k] = min(old.values[k] + step, high[k])
-        change = (predict(ends[1]) - predict(ends[0])) / (ends[1][k] - ends[0][k])
-        slopes[:, k] = np.where(np.isfinite(change), change, slopes[:, k])
-    return replace(old, fit=replace(old.fit, slopes=slopes))
 
 
 def doubted_for_facets(experiment: Experiment, model: Fitted) -> Fitted:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.criticism.fit import FIRST_STEPS, STEPS, Fit, fit, take_slopes
+from geomdrap.criticism.fit import FIRST_STEPS, LOOSE, STEPS, Fit, fit, take_slopes
 from geomdrap.criticism.likelihood import is_noise, square_beside
 from geomdrap.criticism.start import LEAST_GAIN, TURNS, Glance, as_meant, glance, is_astray, start_values
 from geomdrap.effects import make
@@ -25,6 +25,7 @@ STEP = 0.1  # of a parameter's typical size: the differences with which slopes a
 NEAR = 0.2  # of these: where slopes are taken to first order
 LEAST = 0.01  # of its typical size: the least value of what acts at once
 FEW_STEPS = 7  # of a fit whose every drape is costly
+CREEP = 2e-3  # of its chi-square, likewise: steps that gain less do not make it another one
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
 NEARLY = 0.02  # of the misfit: a model that leaves less, and little beside the noise, has explained nearly all of it
 HOPELESS = 0.5  # of the way from the best model back to the base
@@ -170,7 +171,8 @@ def fit_placement(experiment: Experiment, whiten: Whiten) -> Fitted:
     """The model without effects."""
     model = Model(())
     predict = Predictor(experiment, model)
-    return Fitted(model, fit(predict, experiment.measured, whiten, model.neutral, model.steps, *model.bounds))
+    way = model.neutral, model.steps, *model.bounds
+    return Fitted(model, fit(predict, experiment.measured, whiten, *way, small=LOOSE))
 
 
 def look_at(experiment: Experiment, whiten: Whiten, likely: Whiten, base: Fitted, effect: str) -> Look:
@@ -236,12 +238,13 @@ def add_effect(
     # slopes may mislead a first step or two; what is still far off then stays so
     enough = least + far * (base.fit.chi2 - least) if seen is not None else math.inf
     patience = 2 * FIRST_STEPS if kind.costly else FIRST_STEPS
-    way = start, model.steps, low, high, slopes, most, enough, patience
+    small = CREEP * values if kind.costly else LOOSE
+    way = start, model.steps, low, high, slopes, most, enough, patience, small
     found = fit(predict, experiment.measured, whiten, *way, beside=predict.beside)
     if is_astray(base, FAR_ASTRAY) and not kind.costly:
         # without positions another valley of the placement, centimetres away, may have taken the effect's place
         there = np.append(as_meant(base), found.values[own])
-        again = fit(predict, experiment.measured, whiten, there, model.steps, low, high)
+        again = fit(predict, experiment.measured, whiten, there, model.steps, low, high, small=LOOSE)
         found = again if _is_better(whiten, again, found) else found
     return Fitted(model, found)
 
