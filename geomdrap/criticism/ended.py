@@ -80,6 +80,15 @@ def left_over(experiment: Experiment, model: Fitted, scatter: Scatter) -> Leftov
     return leftover(experiment, rows, judge, Residuals(model.fit.residual[rows], model.fit.slopes[rows]), scatter)
 
 
+def likeliest(experiment: Experiment, model: Fitted, before: Scatter) -> Scatter:
+    """The likeliest scatter of a model on finer nets, if there was any ``before``: coarse ones added to that."""
+    if before.size == 0.0:
+        return before
+    rows = np.isfinite(model.fit.residual)
+    residuals = Residuals(model.fit.residual[rows], model.fit.slopes[rows])
+    return judge_of(experiment, rows).best_scatter([residuals], [0])[0][0]
+
+
 def ended(meant: Experiment, rounds: Sequence[Round], done: Callable[[str], None]) -> End:
     """The end of a search, in an experiment as it was ``meant``; ``done`` is told each effect that is fitted on."""
     names, model, scatter = found_by(rounds)
@@ -91,6 +100,7 @@ def ended(meant: Experiment, rounds: Sequence[Round], done: Callable[[str], None
         alike, rounds = tuple(ends), [*rounds[:k], seen, *rounds[k + 1 :]]
         names, scatter = [*names[:k], alike[0]], seen.trial(alike[0])[1]
     experiment, model = ends[alike[0]] if alike else final(meant, model, scatter)
+    scatter = scatter if experiment is meant else likeliest(experiment, model, scatter)
     left = left_over(experiment, model, scatter)
     # a plateau that the model found does not foretell is no matter of chance: nothing else makes one
     if locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):

@@ -52,13 +52,15 @@ def fit(
     small: float = SMALL,
     beside: Beside = lambda at, step: None,
     lasting: int = 0,
+    are_fresh: bool = False,
 ) -> Fit:
     """Parameters (p,) between ``low`` and ``high`` with the least squares of ``whiten(measured - predict(p))``.
 
     ``predict`` gives (m,) values, NaN where it has none; those count as if they had kept their last residual.
-    ``steps`` (p,) are the differences with which slopes are taken, where ``slopes`` (m, p) are not given. At
-    most ``most`` steps are tried; a fit that is above a chi-square of ``enough`` ``FIRST_STEPS`` after the start, or
-    after slopes were taken anew, but at the latest after ``patience`` steps, is given up.
+    ``steps`` (p,) are the differences with which slopes are taken, where ``slopes`` (m, p) are not given; given ones
+    that ``are_fresh`` were taken at the start. At most ``most`` steps are tried; a fit that is above a chi-square of
+    ``enough`` ``FIRST_STEPS`` after the start, or after slopes were taken anew, but at the latest after ``patience``
+    steps, is given up.
     A step that promises or gains less than ``small`` of chi-square ends it, in units of what the model leaves of each
     value where that is more than noise: it then counts as noise. ``beside`` as of ``take_slopes``.
     If any are ``lasting``, slopes of the parameters after the first so many are taken anew at the start.
@@ -74,7 +76,7 @@ def fit(
         jacobian[:, new] = take_slopes(predict, values, predict(values), steps, low, high, new, beside)[:, new]
     chi2 = _square(whiten(filled))
     damping = 0.0
-    fresh, good = slopes is None, jacobian
+    fresh, good = slopes is None or are_fresh, jacobian
     first = FIRST_STEPS
     for tried in range(most):
         if tried >= first and chi2 > enough:
@@ -83,9 +85,10 @@ def fit(
         # as a locking angle that no shear reaches: its slope is rounding, and would send it to the end of its range
         moves = np.linalg.norm(seen, axis=0) * steps > UNSEEN
         step = _step(seen, whiten(filled), damping, values, low, high, moves)
-        step *= min(1.0, FARTHEST / max(float(np.abs(step / steps).max()), 1e-300))
+        share = min(1.0, FARTHEST / max(float(np.abs(step / steps).max()), 1e-300))
+        step *= share
         foreseen = chi2 - _square(whiten(filled - jacobian @ step))
-        unit = max(1.0, chi2 / len(measured))
+        unit = max(1.0, chi2 / len(measured)) if share == 1.0 else 1.0  # of a step cut short not all is known
         if (np.abs(step) <= LEAST_STEP * steps).all() or foreseen < small * unit:
             break
         there = predict(values + step)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from geomdrap.criticism.experiment import Experiment
 
 REFINEMENTS = 5  # steps on a finer net
+LAST_STEPS = 3  # of a fit that ends where it nearly was
 MORE_STEPS = 18  # of a costly fit, if it is the best
 LESS, FEW = 3.0, 3  # times less than was found is tried, in a few steps
 MOSTLY = 0.9  # of the values: a net that predicts fewer is not compared with another
@@ -60,7 +61,8 @@ def settled(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
         ends[1][k] = min(old.values[k] + step, high[k])
         change = (predict(ends[1]) - predict(ends[0])) / (ends[1][k] - ends[0][k])
         slopes[:, k] = np.where(np.isfinite(change), change, slopes[:, k])
-    found = fit(predict, experiment.measured, whiten, old.values, model.steps, low, high, slopes)
+    way = old.values, model.steps, low, high, slopes, LAST_STEPS
+    found = fit(predict, experiment.measured, whiten, *way, are_fresh=True)
     return Fitted(model, replace(found, slopes=slopes))
 
 

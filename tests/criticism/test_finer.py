@@ -16,7 +16,7 @@ from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.fitted_on import doubted_for_facets, doubted_for_pitch, refined
 from geomdrap.criticism.layup import Layup
-from geomdrap.criticism.likelihood import NO_SCATTER
+from geomdrap.criticism.likelihood import NO_SCATTER, Scatter
 from geomdrap.criticism.model import Fitted, Model
 from geomdrap.criticism.prepare import prepare
 from geomdrap.criticism.search import Round
@@ -310,3 +310,32 @@ def test_what_the_pitch_leaves_in_doubt_is_all_of_its_error():
     old = Fitted(Model(("thickness",)), Fit(TRUTH, np.zeros(POINTS), SLOPES, 0.0), np.full(4, 0.03))
     got = doubted_for_pitch(OfPitch(), old)
     np.testing.assert_allclose(got.doubt, np.hypot(0.03, np.abs(PER_PITCH)))
+
+
+def test_scatter_on_finer_nets_is_found_anew_if_coarser_ones_had_any(monkeypatch):
+    anew = Scatter(0.2, 30.0)
+    judge = SimpleNamespace(best_scatter=lambda models, of: ([anew], np.zeros(1)))
+    monkeypatch.setattr(ended, "judge_of", lambda experiment, rows: judge)
+    model = fitted("crossing-slip")
+    assert ended.likeliest(experiment((2.0, 4.0)), model, Scatter(0.5, 20.0)) is anew
+    assert ended.likeliest(experiment((2.0, 4.0)), model, NO_SCATTER) is NO_SCATTER
+
+
+def test_slopes_of_crossings_that_slide_are_of_the_ply_that_is_laid_and_of_what_slides():
+    part = shapes.sphere_cap(80.0, 60.0, 4.0)
+    seed = (3.0, 2.0, 79.9)
+    net = gd.drape(part, seed, pitch=6.0, project=True)
+    u, v = (a.ravel() for a in np.meshgrid(np.arange(-45.0, 46.0, 15.0), np.arange(-45.0, 46.0, 15.0)))
+    at = net.interpolate(u, v)[0]
+    measured = gd.Measurement("marks.csv", at, u, v)
+    meant, _ = prepare(part, measured, Layup(seed, 0.0, pitch=None, project=True), 0.1, None, None)
+
+    def effects(du, share):
+        made = gd.effects.make
+        return [made("placement", du=du), made("crossing-slip", share=share, onset=15.0)]
+
+    here = effects(0.0, 0.3)
+    for there in (effects(0.05, 0.3), effects(0.0, 0.31)):
+        quick, full = meant.beside(here, there), meant.predict(there) - meant.predict(here)
+        assert np.sqrt(np.nanmean((quick - full) ** 2)) < 0.15 * np.sqrt(np.nanmean(full**2))
+    assert meant.beside(here, effects(0.05, 0.31)) is None  # one at a time

@@ -131,6 +131,38 @@ def test_a_fit_ends_where_a_step_gains_less_than_is_asked():
     assert chi2[0] < 1e-3 < chi2[1]
 
 
+def test_what_a_model_leaves_counts_as_noise_where_it_is_more():
+    """Values in units ten times smaller, beside what no such curve fits: there is no more to be told of them."""
+    y = curve(np.array([3.0, 1.5])) + 0.3 * np.random.default_rng(1).normal(size=40)
+
+    def count(noise):
+        calls = []
+
+        def predict(p):
+            calls.append(p)
+            return curve(p)
+
+        got = fit(predict, y, lambda a: a / noise, np.array([1.0, 0.5]), STEPS, *WIDE)
+        return len(calls), got.values
+
+    (few, values), (many, same_values) = count(0.3), count(0.03)
+    assert few == many
+    np.testing.assert_allclose(values, same_values, rtol=1e-6)
+
+
+def test_fresh_slopes_are_not_taken_again_where_a_step_fails():
+    asked = []
+    edge = np.array([2.0, 1.0])
+
+    def predict(p):
+        asked.append(p.copy())
+        return curve(p) if (p == edge).all() else np.full(40, 100.0)
+
+    slopes = take_slopes(curve, edge, curve(edge), STEPS, *WIDE)
+    fit(predict, curve(np.array([2.5, 1.1])), same, edge, STEPS, *WIDE, slopes, 3, are_fresh=True)
+    assert len(asked) == 4  # where it began, and three steps
+
+
 def test_a_fit_that_stays_far_above_what_is_asked_is_given_up():
     y = curve(np.array([3.0, 1.5]))
 

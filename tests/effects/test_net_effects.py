@@ -34,6 +34,34 @@ def test_sliding_crossings_relieve_shear_and_leave_each_yarn_its_length():
     assert np.nanmedian((relieved / wanted)[sheared]) > 0.3
 
 
+def slid_on(part, share, onset, near=None, shift=0.0):
+    made = [gd.effects.make("placement", du=shift), gd.effects.make("crossing-slip", share=share, onset=onset)]
+    return gd.drape(part, SEED, pitch=6.0, effects=made, project=True, near=near)
+
+
+@pytest.mark.parametrize(("share", "onset", "shift"), [(0.32, 14.0, 0.0), (0.3, 15.0, 0.4)])
+def test_sliding_crossings_are_found_again_from_those_of_a_ply_near(share, onset, shift):
+    near = slid_on(CAP, 0.3, 15.0)
+    one, other = slid_on(CAP, share, onset, shift=shift), slid_on(CAP, share, onset, near, shift)
+    assert not one.warnings + other.warnings
+    np.testing.assert_allclose(other.points, one.points, atol=2e-3)
+    np.testing.assert_allclose(other.cell_shear, one.cell_shear, atol=0.05)
+
+
+@pytest.mark.parametrize(("share", "onset"), [(0.31, 15.0), (0.3, 15.5)])
+def test_crossings_beside_those_that_have_slid_to_first_order(share, onset):
+    near = slid_on(CAP, 0.3, 15.0)
+    full = slid_on(CAP, share, onset).points - near.points
+    quick = gd.effects.make("crossing-slip", share=share, onset=onset).beside(near).points - near.points
+    assert np.isfinite(quick).sum() == np.isfinite(full).sum()
+    assert np.sqrt(np.nanmean((quick - full) ** 2)) < 0.1 * np.sqrt(np.nanmean(full**2))
+
+
+def test_beside_crossings_that_have_not_slid_there_is_nothing_to_first_order():
+    plain = drape(CAP, origin=SEED, pitch=6.0, reach=(30.0, 30.0))
+    assert gd.effects.make("crossing-slip", share=0.3, onset=40.0).beside(plain) is None
+
+
 def test_crossings_stay_where_shear_is_below_the_onset():
     plain = drape(CAP, origin=SEED, pitch=6.0, reach=(30.0, 30.0))
     slid = drape(CAP, "crossing-slip:share=0.5,onset=40", origin=SEED, pitch=6.0, reach=(30.0, 30.0))

@@ -1,6 +1,5 @@
 """Nets that turn as a whole about their seed, and nets that refine a coarser one."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
