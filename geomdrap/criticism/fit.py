@@ -21,6 +21,7 @@ SMALL, LOOSE = 0.05, 1.0  # of chi-square: a step that promises or gains less en
 LEAST_STEP = 1e-3  # of a parameter's own step, in every parameter: less ends the fit, too
 FARTHEST = 100.0  # of a parameter's own step: no further at once, since slopes tell nothing of what is far
 RAGGED = 1.0  # of chi-square: where a step along fresh slopes promises no more and fails, facets decide
+MOST_DAMPING = 100.0  # of slopes: a fit that needs more stands still
 UNSEEN = 5e-3  # noises, over all values together: a parameter whose own step changes less stays where it is
 
 
@@ -65,55 +66,109 @@ def fit(
     value where that is more than noise: it then counts as noise. ``beside`` as of ``take_slopes``.
     If any are ``lasting``, slopes of the parameters after the first so many are taken anew at the start.
     """
-    values = np.clip(np.asarray(start, dtype=float), low, high)
-    residual = measured - predict(values)
-    lost = np.isnan(residual)
-    filled = np.where(lost, 0.0, residual)
-    jacobian = np.zeros((len(residual), len(values))) if slopes is None else slopes.copy()
-    free = np.flatnonzero(high > low)  # the others keep the slopes that they have
+    problem = _Problem(predict, measured, whiten, steps, low, high, beside)
+    way = _Way(problem, np.clip(np.asarray(start, dtype=float), low, high), slopes, are_fresh)
     if slopes is None or lasting:
-        new = free[free >= lasting]
-        jacobian[:, new] = take_slopes(predict, values, predict(values), steps, low, high, new, beside)[:, new]
-    chi2 = _square(whiten(filled))
-    damping = 0.0
-    fresh, good = slopes is None or are_fresh, jacobian
+        way.take_slopes(lasting)
     first = FIRST_STEPS
     for tried in range(most):
-        if tried >= first and chi2 > enough:
+        if tried >= first and way.chi2 > enough:
             break
-        seen = whiten(jacobian)
-        # as a locking angle that no shear reaches: its slope is rounding, and would send it to the end of its range
-        moves = np.linalg.norm(seen, axis=0) * steps > UNSEEN
-        step = _step(seen, whiten(filled), damping, values, low, high, moves)
-        share = min(1.0, FARTHEST / max(float(np.abs(step / steps).max()), 1e-300))
-        step *= share
-        foreseen = chi2 - _square(whiten(filled - jacobian @ step))
-        unit = max(1.0, chi2 / len(measured)) if share == 1.0 else 1.0  # of a step cut short not all is known
+        step, foreseen, is_whole = way.step()
+        # what a step that was cut short leaves tells nothing of the model
+        unit = max(1.0, way.chi2 / len(measured)) if is_whole else 1.0
         if (np.abs(step) <= LEAST_STEP * steps).all() or foreseen < small * unit:
             break
-        there = predict(values + step)
-        new = measured - there
-        new = np.where(np.isnan(new), filled, new)
-        new_chi2 = _square(whiten(new))
-        # Broyden's correction: what the step really changed, less what the slopes foretold
-        scaled = step / steps
-        jacobian = jacobian + np.outer((filled - new - jacobian @ step) / (scaled @ scaled), scaled / steps)
-        gain = chi2 - new_chi2
+        gain = way.go(step)
         if gain > 0.0:
-            values, filled, chi2, damping = values + step, new, new_chi2, 0.0
-            lost = np.isnan(there)
-            fresh, good = False, jacobian
             if gain < small * unit:
                 break
-        elif not fresh:  # the slopes are worn: take them anew, once for each place
-            jacobian[:, free] = take_slopes(predict, values, predict(values), steps, low, high, free, beside)[:, free]
-            fresh, first, good = True, min(max(first, tried + 1 + FIRST_STEPS), patience), jacobian
+        elif not way.is_fresh:  # the slopes are worn: take them anew, once for each place
+            way.take_slopes()
+            first = min(max(first, tried + 1 + FIRST_STEPS), patience)
         else:
-            jacobian = good  # what a refused step has shown, beyond a threshold it may be, is no slope here
-            damping = max(4.0 * damping, 0.3)
-            if foreseen < RAGGED * unit or damping > 100.0:
+            way.hold_back()
+            if foreseen < RAGGED * unit or way.damping > MOST_DAMPING:
                 break
-    return Fit(values, np.where(lost, np.nan, filled), jacobian, _square(whiten(np.where(lost, 0.0, filled))))
+    return way.end()
+
+
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    """What a fit asks and what bounds it, as of ``fit``."""
+
+    predict: Predict
+    measured: np.ndarray
+    whiten: Callable[[np.ndarray], np.ndarray]
+    steps: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    beside: Beside
+
+
+class _Way:
+    """Where a fit has come to: values (p,), residual (m,), slopes (m, p), and how far the slopes are trusted.
+
+    ``good`` are the slopes with which it came here, ``lost`` (m,) what the model does not predict here.
+    """
+
+    def __init__(self, problem: _Problem, values: np.ndarray, slopes: np.ndarray | None, are_fresh: bool) -> None:
+        self.problem, self.values = problem, values
+        residual = problem.measured - problem.predict(values)
+        self.lost = np.isnan(residual)
+        self.residual = np.where(self.lost, 0.0, residual)
+        self.chi2 = _square(problem.whiten(self.residual))
+        self.slopes = np.zeros((len(residual), len(values))) if slopes is None else slopes.copy()
+        self.good, self.is_fresh, self.damping = self.slopes, are_fresh, 0.0
+
+    def take_slopes(self, lasting: int = 0) -> None:
+        """Take the slopes of the parameters after the first so many anew; what cannot move keeps its own."""
+        p, values = self.problem, self.values
+        free = np.flatnonzero(p.high > p.low)
+        new = free[free >= lasting]
+        taken = take_slopes(p.predict, values, p.predict(values), p.steps, p.low, p.high, new, p.beside)
+        self.slopes[:, new] = taken[:, new]
+        self.good, self.is_fresh = self.slopes, self.is_fresh or lasting == 0
+
+    def step(self) -> tuple[np.ndarray, float, bool]:
+        """The next step (p,), what it promises of chi-square, and whether it is whole."""
+        p = self.problem
+        seen = p.whiten(self.slopes)
+        # as a locking angle that no shear reaches: its slope is rounding, and would send it to the end of its range
+        moves = np.linalg.norm(seen, axis=0) * p.steps > UNSEEN
+        step = _step(seen, p.whiten(self.residual), self.damping, self.values, p.low, p.high, moves)
+        share = min(1.0, FARTHEST / max(float(np.abs(step / p.steps).max()), 1e-300))
+        step *= share
+        return step, self.chi2 - _square(p.whiten(self.residual - self.slopes @ step)), share == 1.0
+
+    def go(self, step: np.ndarray) -> float:
+        """Take a step (p,), if it gains anything, and correct the slopes by it. What it gains of chi-square."""
+        p = self.problem
+        there = p.predict(self.values + step)
+        new = p.measured - there
+        new = np.where(np.isnan(new), self.residual, new)
+        new_chi2 = _square(p.whiten(new))
+        # Broyden's correction: what the step really changed, less what the slopes foretold
+        scaled = step / p.steps
+        off = self.residual - new - self.slopes @ step
+        self.slopes = self.slopes + np.outer(off / (scaled @ scaled), scaled / p.steps)
+        gain = self.chi2 - new_chi2
+        if gain > 0.0:
+            self.values, self.residual, self.chi2, self.damping = self.values + step, new, new_chi2, 0.0
+            self.lost = np.isnan(there)
+            self.good, self.is_fresh = self.slopes, False
+        return gain
+
+    def hold_back(self) -> None:
+        """Shorten what comes. What a refused step has shown, beyond a threshold it may be, is no slope here."""
+        self.slopes = self.good
+        self.damping = max(4.0 * self.damping, 0.3)
+
+    def end(self) -> Fit:
+        """The fit, as if it ended here."""
+        left = np.where(self.lost, 0.0, self.residual)
+        residual = np.where(self.lost, np.nan, self.residual)
+        return Fit(self.values, residual, self.slopes, _square(self.problem.whiten(left)))
 
 
 def take_slopes(
