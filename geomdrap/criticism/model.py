@@ -207,44 +207,56 @@ def add_effect(
     or to explain nothing beside the likeliest scatter, is not fitted to the end. ``turns``, degrees, are headings at
     which a net that turns as a whole is looked for.
     """
-    model, predict, kind, seen = look.model, look.predict, make(look.effect), look.seen
-    values = len(experiment.measured)
+    kind, seen, values = make(look.effect), look.seen, len(experiment.measured)
     explained = seen is not None and is_noise(least, values)
     nearly = explained or least - values < min(NEARLY * (base.fit.chi2 - values), 2.0 * values)
-    left = (least - values) / max(base.fit.chi2 - values, 1e-300)
-    too_far = NO_RIVAL[nearly or left < MOSTLY]
-    given_up = seen is not None and (nearly or left < HALF) and _hopeless(whiten, base, seen.after, least, too_far)
-    if seen is not None and (given_up or seen.gain < LEAST_GAIN):
-        return _not_fitted(model, base, seen)
-    start = start_values(experiment, predict, whiten, base, look.effect, seen, turns)
-    low, high = model.bounds
-    # what the base already has keeps its slopes; the fit mends them where they mislead it
-    own = slice(len(base.values), None)
-    slopes = take_slopes(
-        predict, start, predict(start), model.steps, low, high, np.arange(len(start))[own], predict.beside
-    )
+    if seen is not None:
+        left = (least - values) / max(base.fit.chi2 - values, 1e-300)
+        too_far = NO_RIVAL[nearly or left < MOSTLY]
+        given_up = (nearly or left < HALF) and _hopeless(whiten, base, seen.after, least, too_far)
+        if given_up or seen.gain < LEAST_GAIN:
+            return _not_fitted(look.model, base, seen)
+    begun = _begun(experiment, whiten, base, look, turns)
+    known, far = least if kind.costly or explained else -math.inf, FAR if nearly else HOPELESS
+    if not _promises(whiten, base, begun.fit.residual, begun.fit.slopes, known, far):
+        if begun.fit.chi2 < base.fit.chi2:
+            return begun
+        neutral = np.append(base.values, [p.neutral for p in kind.parameters])
+        return replace(begun, fit=replace(base.fit, values=neutral, slopes=begun.fit.slopes))
+    # slopes may mislead a first step or two; what is still far off then stays so
+    enough = least + far * (base.fit.chi2 - least) if seen is not None else math.inf
+    return _fitted_from(experiment, whiten, base, look, begun, enough)
+
+
+def _begun(experiment: Experiment, whiten: Whiten, base: Fitted, look: Look, turns: Sequence[float]) -> Fitted:
+    """Where a fit of an effect on top of the base begins, and the slopes there.
+
+    What the base already has keeps its slopes; the fit mends them where they mislead it.
+    """
+    model, predict = look.model, look.predict
+    start = start_values(experiment, predict, whiten, base, look.effect, look.seen, turns)
+    own = np.arange(len(base.values), len(start))
+    slopes = take_slopes(predict, start, predict(start), model.steps, *model.bounds, own, predict.beside)
     slopes[:, : len(base.values)] = base.fit.slopes
     residual = experiment.measured - predict(start)
     residual = np.where(np.isnan(residual), base.fit.residual, residual)
-    known = least if kind.costly or explained else -math.inf
-    far = FAR if nearly else HOPELESS
-    if not _promises(whiten, base, residual, slopes, known, far):
-        chi2 = float((whiten(np.nan_to_num(residual)) ** 2).sum())
-        if chi2 < base.fit.chi2:
-            return Fitted(model, Fit(start, residual, slopes, chi2))
-        neutral = np.append(base.values, [p.neutral for p in kind.parameters])
-        return Fitted(model, Fit(neutral, base.fit.residual, slopes, base.fit.chi2))
-    most = FEW_STEPS if kind.costly else STEPS
-    # slopes may mislead a first step or two; what is still far off then stays so
-    enough = least + far * (base.fit.chi2 - least) if seen is not None else math.inf
-    patience = 2 * FIRST_STEPS if kind.costly else FIRST_STEPS
-    small = CREEP * values if kind.costly else LOOSE
-    way = start, model.steps, low, high, slopes, most, enough, patience, small
+    return Fitted(model, Fit(start, residual, slopes, float((whiten(np.nan_to_num(residual)) ** 2).sum())))
+
+
+def _fitted_from(
+    experiment: Experiment, whiten: Whiten, base: Fitted, look: Look, begun: Fitted, enough: float
+) -> Fitted:
+    """A model with an effect more than the base, fitted from where it has ``begun`` if it comes below ``enough``."""
+    model, predict, kind = look.model, look.predict, make(look.effect)
+    most, patience, small = STEPS, FIRST_STEPS, LOOSE
+    if kind.costly:
+        most, patience, small = FEW_STEPS, 2 * FIRST_STEPS, CREEP * len(experiment.measured)
+    way = begun.values, model.steps, *model.bounds, begun.fit.slopes, most, enough, patience, small
     found = fit(predict, experiment.measured, whiten, *way, beside=predict.beside)
     if is_astray(base, FAR_ASTRAY) and not kind.costly:
         # without positions another valley of the placement, centimetres away, may have taken the effect's place
-        there = np.append(as_meant(base), found.values[own])
-        again = fit(predict, experiment.measured, whiten, there, model.steps, low, high, small=LOOSE)
+        there = np.append(as_meant(base), found.values[len(base.values) :])
+        again = fit(predict, experiment.measured, whiten, there, model.steps, *model.bounds, small=LOOSE)
         found = again if _is_better(whiten, again, found) else found
     return Fitted(model, found)
 
