@@ -130,54 +130,78 @@ def start_values(
 
     ``turns`` are headings, degrees, at which nets that turn as a whole are tried.
     """
-    own = make(effect).parameters
-    p = len(base.values)
-    neutral = np.array([q.neutral for q in own])
-    residual = np.nan_to_num(base.fit.residual)
-    there = experiment.measured - base.fit.residual
-    shifts = whiten(base.fit.slopes)
-
-    def signature(values: np.ndarray) -> np.ndarray:
-        return np.nan_to_num(predict(np.append(base.values, values)) - there)
-
-    alone = []
-    for k, q in enumerate(own):
-        values = neutral.copy()
-        values[k] = q.typical
-        alone.append(signature(values))
-    sizes = [float(np.abs(whiten(s)).max()) for s in alone]
+    kind = make(effect)
+    own, probe = kind.parameters, _Probe(experiment, predict, whiten, base)
+    alone = [probe.signature(_only(own, k)) for k in range(len(own))]
     # nets relaxed from other starts differ by rounding even where nothing acts
+    sizes = [float(np.abs(whiten(s)).max()) for s in alone]
     acting = [k for k, q in enumerate(own) if sizes[k] > NOTHING and q.typical != q.neutral]
     if len(acting) == len(own) and (len(own) > 1 or own[0].low < own[0].neutral < own[0].high):
         # both signs, a slope at nothing: the linear fit is the start
-        slopes = np.column_stack([s / (q.typical - q.neutral) for s, q in zip(alone, own, strict=True)])
-        step = np.linalg.lstsq(np.column_stack([shifts, whiten(slopes)]), whiten(residual), rcond=1e-9)[0]
-        low, high = base.model.bounds
-        straight = np.clip(base.values + step[:p], low, high), _within(neutral + step[p:], own)
-        if seen is None or not (make(effect).costly and is_astray(base)):
+        straight = probe.straight(own, alone)
+        if seen is None or not (kind.costly and is_astray(base)):
             return np.append(*straight)
         return _best_start(experiment, predict, whiten, base, [straight, *_turned(base, seen.values, turns)])
-
-    def misfit(values: np.ndarray) -> float:
-        return square_beside(whiten(residual - signature(values)), shifts)
-
     if len(own) == 1:
-        now = square_beside(whiten(residual), shifts)
-        halvings = 1 if make(effect).costly else HALVINGS
-        probes = _probes(own[0], experiment.top_shear)
-        if seen is not None and seen.values[0] > own[0].typical > own[0].neutral:
-            probes = sorted({*probes, *(f * float(seen.values[0]) for f in BELOW_SEEN)})
-        same = max(SAME, SAME_SHARE * (now - len(residual)))
-        best = np.array([_narrowed(lambda x: misfit(np.array([x])), probes, now, same, halvings)])
+        best = probe.narrowed(own[0], experiment.top_shear, seen, 1 if kind.costly else HALVINGS)
     else:
-        best = min(
-            (_scaled(shape, own, acting, signature, whiten, residual, shifts) for shape in _shapes(own, acting)),
-            key=misfit,
-        )
+        best = min((probe.scaled(shape, own, acting) for shape in _shapes(own, acting)), key=probe.misfit)
     starts = [(base.values, best), (as_meant(base), best)]
-    if make(effect).acts_at_once and not is_noise(base.fit.chi2, len(residual)):
+    if kind.acts_at_once and not is_noise(base.fit.chi2, len(experiment.measured)):
         starts += _turned(base, np.array([q.typical for q in own]), turns)
     return _best_start(experiment, predict, whiten, base, starts)
+
+
+class _Probe:
+    """What values of a new effect leave on top of a base, beside what the base can move."""
+
+    def __init__(
+        self, experiment: Experiment, predict: Callable[[np.ndarray], np.ndarray], whiten: Whiten, base: Fitted
+    ) -> None:
+        self.predict, self.whiten, self.base = predict, whiten, base
+        self.residual = np.nan_to_num(base.fit.residual)
+        self.there = experiment.measured - base.fit.residual
+        self.shifts = whiten(base.fit.slopes)
+
+    def signature(self, values: np.ndarray) -> np.ndarray:
+        """What values (k,) of the effect change (m,)."""
+        return np.nan_to_num(self.predict(np.append(self.base.values, values)) - self.there)
+
+    def misfit(self, values: np.ndarray) -> float:
+        """The chi-square that values (k,) of the effect leave."""
+        return square_beside(self.whiten(self.residual - self.signature(values)), self.shifts)
+
+    def straight(self, own: Sequence[Parameter], alone: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """Values of the base and of the effect that fit best, were its signatures ``alone`` linear."""
+        slopes = np.column_stack([s / (q.typical - q.neutral) for s, q in zip(alone, own, strict=True)])
+        columns = np.column_stack([self.shifts, self.whiten(slopes)])
+        step = np.linalg.lstsq(columns, self.whiten(self.residual), rcond=1e-9)[0]
+        (low, high), p = self.base.model.bounds, len(self.base.values)
+        more = [_clip(q.neutral + s, q) for q, s in zip(own, step[p:], strict=True)]
+        return np.clip(self.base.values + step[:p], low, high), np.array(more)
+
+    def narrowed(self, q: Parameter, top: float, seen: Glance | None, halvings: int) -> np.ndarray:
+        """The best of a few values (1,) of a parameter; ``top`` as of ``_probes``, ``seen`` what one look showed."""
+        now = square_beside(self.whiten(self.residual), self.shifts)
+        probes = _probes(q, top)
+        if seen is not None and seen.values[0] > q.typical > q.neutral:
+            probes = sorted({*probes, *(f * float(seen.values[0]) for f in BELOW_SEEN)})
+        same = max(SAME, SAME_SHARE * (now - len(self.residual)))
+        return np.array([_narrowed(lambda x: self.misfit(np.array([x])), probes, now, same, halvings)])
+
+    def scaled(self, shape: np.ndarray, own: Sequence[Parameter], acting: Sequence[int]) -> np.ndarray:
+        """Values with the acting ones as large as the residual wants them, were their signature linear."""
+        columns = np.column_stack([self.shifts, self.whiten(self.signature(shape))])
+        factor = float(np.linalg.lstsq(columns, self.whiten(self.residual), rcond=1e-9)[0][-1])
+        out = shape.copy()
+        for k in acting:
+            out[k] = _clip(own[k].neutral + factor * (shape[k] - own[k].neutral), own[k])
+        return out
+
+
+def _only(own: Sequence[Parameter], k: int) -> np.ndarray:
+    """Values (p,) of which the k-th is typical and the others do nothing."""
+    return np.array([q.typical if n == k else q.neutral for n, q in enumerate(own)])
 
 
 def _turned(base: Fitted, values: np.ndarray, turns: Sequence[float]) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -249,28 +273,6 @@ def _shapes(own: Sequence[Parameter], acting: Sequence[int]) -> list[np.ndarray]
     """Values of the parameters that do nothing alone, over their ranges; the others at their typical sizes."""
     each = [[q.typical] if k in acting else [q.low + f * (q.high - q.low) for f in SHAPES] for k, q in enumerate(own)]
     return [np.array(values) for values in product(*each)]
-
-
-def _scaled(
-    shape: np.ndarray,
-    own: Sequence[Parameter],
-    acting: Sequence[int],
-    signature: Callable[[np.ndarray], np.ndarray],
-    whiten: Whiten,
-    residual: np.ndarray,
-    shifts: np.ndarray,
-) -> np.ndarray:
-    """The values with the acting ones as large as the residual wants them, were their signature linear."""
-    column = whiten(signature(shape))
-    factor = float(np.linalg.lstsq(np.column_stack([shifts, column]), whiten(residual), rcond=1e-9)[0][-1])
-    out = shape.copy()
-    for k in acting:
-        out[k] = _clip(own[k].neutral + factor * (shape[k] - own[k].neutral), own[k])
-    return out
-
-
-def _within(values: np.ndarray, own: Sequence[Parameter]) -> np.ndarray:
-    return np.array([_clip(v, q) for v, q in zip(values, own, strict=True)])
 
 
 def _clip(value: float, q: Parameter) -> float:
