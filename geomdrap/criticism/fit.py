@@ -21,7 +21,8 @@ SMALL, LOOSE = 0.05, 1.0  # of chi-square: a step that promises or gains less en
 LEAST_STEP = 1e-3  # of a parameter's own step, in every parameter: less ends the fit, too
 FARTHEST = 100.0  # of a parameter's own step: no further at once, since slopes tell nothing of what is far
 RAGGED = 1.0  # of chi-square: where a step along fresh slopes promises no more and fails, facets decide
-MOST_DAMPING = 100.0  # of slopes: a fit that needs more stands still
+LEAST_DAMPING, MOST_DAMPING = 0.03, 100.0  # of slopes: none, and where a fit stands still
+EASED = 0.3  # of the damping after a step that gains: along a bent valley the next one would fail again without it
 UNSEEN = 5e-3  # noises, over all values together: a parameter whose own step changes less stays where it is
 
 
@@ -154,7 +155,8 @@ class _Way:
         self.slopes = self.slopes + np.outer(off / (scaled @ scaled), scaled / p.steps)
         gain = self.chi2 - new_chi2
         if gain > 0.0:
-            self.values, self.residual, self.chi2, self.damping = self.values + step, new, new_chi2, 0.0
+            self.values, self.residual, self.chi2 = self.values + step, new, new_chi2
+            self.damping = EASED * self.damping if EASED * self.damping > LEAST_DAMPING else 0.0
             self.lost = np.isnan(there)
             self.good, self.is_fresh = self.slopes, False
         return gain
