@@ -143,7 +143,7 @@ def conclude(
         verdict=verdict,
         candidates=candidates,
         confidence=_confidence(verdict, rounds, names, left),
-        experiment=experiment,
+        experiment=experiment.at_the_end(),
         steps=steps,
         noise_floor=_floor(experiment, scatter),
         placement=placement,

@@ -220,6 +220,10 @@ class Experiment:
         values = {"noise": self.noise[left], "measured": self.measured[left]}
         return replace(self, mask=self.mask & ~drop, coarseness=[], judges={}, **values)
 
+    def at_the_end(self) -> Experiment:
+        """The same experiment without what is large and soon made again."""
+        return replace(self, surfaces={}, judges={}, coarseness=[])
+
     def unsmoothed(self) -> Experiment:
         """The same experiment with nets on the facets themselves, not on the smooth tool that they stand for."""
         empty: dict[str, dict[str, object]] = {name: {} for name in ("surfaces", "costly", "last", "refused")}

@@ -339,3 +339,12 @@ def test_slopes_of_crossings_that_slide_are_of_the_ply_that_is_laid_and_of_what_
         quick, full = meant.beside(here, there), meant.predict(there) - meant.predict(here)
         assert np.sqrt(np.nanmean((quick - full) ** 2)) < 0.15 * np.sqrt(np.nanmean(full**2))
     assert meant.beside(here, effects(0.05, 0.31)) is None  # one at a time
+
+
+def test_what_is_large_and_soon_made_again_is_not_kept_with_a_diagnosis():
+    """Nets are kept: one that is relaxed anew, not from another, may come to rest elsewhere."""
+    full = replace(experiment((2.0, 4.0)), surfaces={"": object()}, judges={b"": object()}, costly={"": object()})
+    left = full.at_the_end()
+    assert not left.surfaces
+    assert not left.judges
+    assert left.costly is full.costly
