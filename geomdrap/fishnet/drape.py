@@ -184,14 +184,12 @@ def _sides_as_they_lie(grid: Grid, fabric: Fabric) -> tuple[np.ndarray, np.ndarr
 
 def _as_net(start: Start, reach: tuple[float, float] | None, extent: Extent, grid: Grid) -> Net:
     """Cut the grid to the nodes that are there and turn it into a Net."""
-    surface, part, seed, pitch, fabric = start.surface, start.part, start.seed, start.pitch, start.fabric
+    part, seed, pitch = start.part, start.seed, start.pitch
     i0, i1, j0, j1 = (int(k) for k in grid.box[:4])
     near = np.s_[i0 : i1 + 1, j0 : j1 + 1]
     face = grid.face[near] - 1
     lattice = all_in_space(start.mesh, grid, i0, i1 + 1, j0, j1 + 1)
-    pieces = grid.marks[near][..., PIECES]
-    warp, weft = (pieces & 1) != 0, (pieces & 2) != 0
-    lattice_valid = warp[:-1, :-1] & warp[:-1, 1:] & weft[:-1, :-1] & weft[1:, :-1]
+    lattice_valid = _whole_cells(grid.marks[near][..., PIECES])
     status = extent.status_around(grid)
     over_hole = face >= len(part.triangles)
     points, valid = lattice, lattice_valid
@@ -200,14 +198,10 @@ def _as_net(start: Start, reach: tuple[float, float] | None, extent: Extent, gri
         points = np.where(over_hole[..., None], np.nan, lattice)
         face = np.where(over_hole, -1, face)
         valid = lattice_valid & np.isfinite(cells_of(points[..., 0])).all(axis=0)
-    notes = start.notes
     cell_shear, shear = shears(grid, i0, j0, valid)
-    if part is not surface:  # of its pieces one is draped
-        others = surface.n_components - 1
-        notes = (*notes, f"the part has {others + 1} separate pieces; the one with the origin is draped")
     return Net(
         surface=part,
-        fabric=fabric,
+        fabric=start.fabric,
         origin=seed.point,
         origin_face=seed.face,
         warp0=seed.warp,
@@ -227,12 +221,30 @@ def _as_net(start: Start, reach: tuple[float, float] | None, extent: Extent, gri
         yarns=yarn_directions(start.mesh, grid, i0, i1 + 1, j0, j1 + 1),
         cell_shear=cell_shear,
         shear=shear,
-        sides=_sides_as_they_lie(grid, fabric),
-        notes=notes,
-        warnings=(
-            *unit_hint(surface),
-            *_cut_off(surface, part),
-            *coarse_facets(part, pitch),
-            *_unsettled(grid, extent, fabric),
-        ),
+        sides=_sides_as_they_lie(grid, start.fabric),
+        notes=(*start.notes, *_left_out(start)),
+        warnings=_warnings(start, extent, grid),
+    )
+
+
+def _whole_cells(pieces: np.ndarray) -> np.ndarray:
+    """Which cells (nu - 1, nv - 1) have four sides; ``pieces`` (nu, nv) as in the grid."""
+    warp, weft = (pieces & 1) != 0, (pieces & 2) != 0
+    return np.asarray(warp[:-1, :-1] & warp[:-1, 1:] & weft[:-1, :-1] & weft[1:, :-1])
+
+
+def _left_out(start: Start) -> tuple[str, ...]:
+    """A note where of several pieces one is draped."""
+    if start.part is start.surface:
+        return ()
+    return (f"the part has {start.surface.n_components} separate pieces; the one with the origin is draped",)
+
+
+def _warnings(start: Start, extent: Extent, grid: Grid) -> tuple[str, ...]:
+    """What the user should look at."""
+    return (
+        *unit_hint(start.surface),
+        *_cut_off(start.surface, start.part),
+        *coarse_facets(start.part, start.pitch),
+        *_unsettled(grid, extent, start.fabric),
     )
