@@ -142,7 +142,7 @@ class Experiment:
         """
         if not any(e.costly for e in others):
             return None
-        if not fabric_with(others, Fabric()).relaxes:
+        if not fabric_with(in_order(others), Fabric()).relaxes:
             return self._slid_beside(effects, others)
         near, lay, (surface, acting) = self.draped(effects, self.pitches[1]), self.layup, self._with_hold(others)
         if restless(near):
@@ -153,8 +153,8 @@ class Experiment:
 
     def _slid_beside(self, effects: Sequence[Effect], others: Sequence[Effect]) -> np.ndarray | None:
         """Likewise where crossings slide. How far they do hardly depends on where the ply is laid."""
-        last = [e for e in in_order(others) if e.costly or e.stage == "net"][-1]
-        if not isinstance(last, CrossingSlip) or sum(e.costly for e in others) > 1:
+        acting = [e for e in in_order(others) if e.costly or e.stage == "net"]
+        if not acting or not isinstance(acting[-1], CrossingSlip) or sum(e.costly for e in acting) > 1:
             return None
         plain = [[e for e in some if not e.costly] for some in (effects, others)]
         if _apart(*map(in_order, plain)) > 0.0:
@@ -162,7 +162,7 @@ class Experiment:
             there, here = (self._flat(self.draped(some)) for some in reversed(plain))
             return there - here if own[0] == own[1] else None
         near = self.draped(effects, self.pitches[1])
-        net = None if restless(near) else last.beside(near)
+        net = None if restless(near) else acting[-1].beside(near)
         return None if net is None else self._flat(net) - self._flat(near)
 
     def _draped(self, effects: Sequence[Effect], pitch: float, near: Net | None = None) -> Net:

@@ -339,6 +339,10 @@ def test_slopes_of_crossings_that_slide_are_of_the_ply_that_is_laid_and_of_what_
         quick, full = meant.beside(here, there), meant.predict(there) - meant.predict(here)
         assert np.sqrt(np.nanmean((quick - full) ** 2)) < 0.15 * np.sqrt(np.nanmean(full**2))
     assert meant.beside(here, effects(0.05, 0.31)) is None  # one at a time
+    assert meant.beside(effects(0.0, 0.0), effects(0.05, 0.0)) is None  # nothing slides
+    locks = gd.effects.make("locking", angle=90.0)
+    assert meant.beside([*here, locks], [*effects(0.0, 0.31), locks]) is not None  # what is neutral does not count
+    assert meant.beside([locks], [locks]) is None
 
 
 def test_what_is_large_and_soon_made_again_is_not_kept_with_a_diagnosis():
