@@ -78,10 +78,12 @@ def compare(
     from geomdrap.cli.acting import blaming, effects_of
     from geomdrap.cli.compare_summary import summary
     from geomdrap.cli.measured import read_asked
-    from geomdrap.cli.messages import print_json, say
+    from geomdrap.cli.messages import of_an_earlier_run, print_json, say
     from geomdrap.cli.progress import Progress, announce_compilation
     from geomdrap.export.compare_json import as_dict
+    from geomdrap.export.compare_outputs import COMPARE_OUTPUTS as COMPARE_FILES
     from geomdrap.export.compare_outputs import write_comparison
+    from geomdrap.export.outputs import left_over
     from geomdrap.export.whole import check_writable
 
     if outputs:
@@ -96,7 +98,9 @@ def compare(
             result = gd.compare(ready.surface, ready.measurement, **ready.laid, effects=effects, smooth=not facets)
         progress.step("Writing")
         files = write_comparison(result, folder, outputs)
-    say(result.warnings, (*ready.notes, *result.notes), quiet)
+    known = [output.file for output in COMPARE_FILES.values()]
+    left = of_an_earlier_run(left_over(folder, files.values(), known) if files else [], folder)
+    say((*result.warnings, *left), (*ready.notes, *result.notes), quiet)
     if as_json:
         print_json(as_dict(result, files))
     elif not quiet:

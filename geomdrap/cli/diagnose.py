@@ -66,9 +66,11 @@ def diagnose(
     from geomdrap.cli.acting import effects_of
     from geomdrap.cli.diagnose_summary import summary
     from geomdrap.cli.measured import read_asked
-    from geomdrap.cli.messages import print_json, say
+    from geomdrap.cli.messages import of_an_earlier_run, print_json, say
     from geomdrap.cli.progress import Progress, announce_compilation
+    from geomdrap.export.diagnose_outputs import DIAGNOSE_OUTPUTS as DIAGNOSE_FILES
     from geomdrap.export.diagnose_outputs import as_dict, write_diagnosis
+    from geomdrap.export.outputs import left_over
     from geomdrap.export.whole import check_writable
 
     if outputs:
@@ -82,7 +84,8 @@ def diagnose(
         result = gd.diagnose(ready.surface, ready.measurement, **ready.laid, progress=progress.share)
         progress.step("Writing")
         files = write_diagnosis(result, folder, outputs)
-    say(result.warnings, (*ready.notes, *result.notes), quiet)
+    left = of_an_earlier_run(left_over(folder, files.values(), DIAGNOSE_FILES.values()) if files else [], folder)
+    say((*result.warnings, *left), (*ready.notes, *result.notes), quiet)
     if as_json:
         print_json(as_dict(result, files))
     elif not quiet:

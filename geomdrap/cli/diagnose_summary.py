@@ -38,12 +38,10 @@ def _words(diagnosis: Diagnosis, more: Sequence[str] = ()) -> Iterator[str]:
     yield from wrapped(story.verdict_sentence(diagnosis))
     yield from wrapped(story.error_sentence(diagnosis))
     first = story.placement_sentence(diagnosis), story.rival_sentence(diagnosis)
-    for sentence in (*first, *more, *diagnosis.hints, *story.unseen_sentences(diagnosis)):
+    last = *story.unseen_sentences(diagnosis), story.outlier_sentence(diagnosis)
+    for sentence in (*first, *more, *diagnosis.hints, *last):
         if sentence:
             yield from wrapped(sentence[0].upper() + sentence[1:])
-    if diagnosis.outliers:
-        lines = ", ".join(str(o.line) for o in diagnosis.outliers[:12])
-        yield from wrapped(f"Set apart because they stand out from their neighbours: lines {lines}.")
 
 
 def _table(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:

@@ -110,7 +110,7 @@ def search(
         if best is None or len(rounds) == MOST_EFFECTS or locks(experiment, rounds[0]):
             return rounds
         base, scatter = rounds[-1].trial(best)
-        if not (leaves(rounds[0], base, WORTH) and left_over(experiment, base, scatter).structured):
+        if not (leaves(rounds[0], base, WORTH) and left_over(experiment, base, scatter).doubtful):
             return rounds
 
 

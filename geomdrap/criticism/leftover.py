@@ -21,6 +21,7 @@ DEGREE = 3  # of the polynomials
 MOST_KNOTS = 16  # of what moves yarns as wholes, over the patch
 ROUGHLY = 50.0  # times less a chance must be there: how scatter adds up over whole yarns is known only roughly
 LEAST = 1e-4  # chance of so much structure where there is only noise and scatter
+DOUBTFUL = 0.02  # the same: it may still be a further effect, which scatter takes for its own
 NOISE = 0.5  # of the noise: a leftover smaller than this is no matter
 
 
@@ -39,6 +40,11 @@ class Leftover:
     def structured(self) -> bool:
         """Whether something is left that needs a cause."""
         return self.p_value < LEAST and self.size > NOISE
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether what is left is more than scatter leaves as a rule, if not for certain."""
+        return self.p_value < DOUBTFUL and self.size > NOISE
 
 
 def leftover(experiment: Experiment, rows: np.ndarray, judge: Judge, model: Residuals, scatter: Scatter) -> Leftover:

@@ -8,6 +8,8 @@ from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Di
 from geomdrap.effects import make
 from geomdrap.measurement.plausible import LOOKS_WRONG
 
+LARGE = 100.0  # times the noise: errors beyond are given to three digits
+MOST_LINES = 12  # of a table: named one by one
 OPEN = 0.2  # confidence: below, the data leave the answer open
 
 
@@ -17,7 +19,7 @@ def verdict_sentence(d: Diagnosis) -> str:
     if d.confidence < OPEN and d.verdict not in (AMBIGUOUS, UNKNOWN):
         answer += f" These data leave that open (confidence {100.0 * d.confidence:.0f} %): measure more points."
     if any(LOOKS_WRONG in warning for warning in d.warnings):
-        return f"The labels of the table look wrong: see the warning. If they are right: {answer}"
+        return f"The table looks wrong: see the warning. If it is right: {answer}"
     return answer
 
 
@@ -32,7 +34,10 @@ def _answer(d: Diagnosis) -> str:
         nothing = "Nothing that can be seen in these data is missing" if hidden else "Nothing is missing"
         return f"{nothing}: the model agrees with the measurement down to its noise{scatter}."
     if d.verdict == PLACEMENT:
-        return f"The model is right, but the ply was laid elsewhere: {_list(d.placement)} (95 %)."
+        return (
+            f"The ply was laid elsewhere: {_list(d.placement)} (95 %). "
+            "Nothing else that can be seen in these data is missing."
+        )
     if d.verdict == AMBIGUOUS:
         return f"These effects explain the measurement equally well: {_and(d.candidates)}."
     if d.verdict == UNKNOWN:
@@ -67,12 +72,10 @@ def rival_sentence(d: Diagnosis) -> str | None:
     """What the next best effect would have explained."""
     if d.verdict in (NONE, PLACEMENT, UNKNOWN):
         return None
-    others = [t for t in d.tried if not t.selected and t.name not in d.candidates]
-    if not others:
-        return None
-    best = max(others, key=lambda t: t.evidence.share)
-    if best.evidence.share < 0.01:
-        return "No other effect explains more than 1 % of the misfit."
+    others = [t for t in d.tried if not t.selected and t.name not in d.candidates and t.evidence.in_range]
+    best = max((t for t in others if _sizes(t)), key=lambda t: t.evidence.share, default=None)
+    if best is None or best.evidence.share < 0.01:
+        return "No other effect of a size that can be explains more than 1 % of the misfit."
     return f"The next best, {best.name}, explains {100 * best.evidence.share:.0f} % of the misfit above the noise."
 
 
@@ -105,12 +108,22 @@ def _sizes(t: Tried) -> list[str]:
     for p in make(t.name).parameters:
         if p.name not in amounts or make(t.name, **{p.name: p.typical}).is_neutral:
             continue
-        amount, side = f"{amounts[p.name]:.2g}", "above "
+        amount, side = _plain(amounts[p.name], 2), "above "
         if p.neutral == p.high:  # as an angle of locking: the lower the stronger
             amount, side = f"{p.neutral - amounts[p.name]:.3g}", "below "
         out.append(f"{'' if side == last else side}{p.name} {amount}{_unit(p.unit)}")
         last = side
     return out
+
+
+def outlier_sentence(d: Diagnosis) -> str | None:
+    """Which lines of the table are set apart."""
+    lines = sorted({o.line for o in d.outliers})
+    if not lines:
+        return None
+    more = f" and {len(lines) - MOST_LINES} more" if len(lines) > MOST_LINES else ""
+    first = ", ".join(map(str, lines[:MOST_LINES]))
+    return f"Set apart because they stand out from their neighbours: lines {first}{more}."
 
 
 def fitted_words(t: Tried) -> str:
@@ -131,7 +144,7 @@ def _row(t: Tried) -> tuple[str, ...]:
         ("* " if t.selected else "  ") + t.name,
         fitted_words(t),
         f"{100 * max(t.evidence.share, 0.0):.0f} %",
-        f"{t.cv_error:.2f}",
+        f"{t.cv_error:.2f}" if t.cv_error < LARGE else _plain(t.cv_error, 3),
         f"{t.evidence.p_family:.1g}",
         ", ".join(t.confounded_with) or "-",
     )
@@ -145,7 +158,12 @@ def _value(v: Value) -> str:
     # no-break spaces: a value stays on one line with its interval
     if not math.isfinite(v.sigma):
         return f"{v.name}\u00a0not\u00a0seen"
-    return f"{v.name}\u00a0{v.value:.3g}\u00a0±\u00a0{1.96 * v.sigma:.1g}{_unit(v.unit)}"
+    return f"{v.name}\u00a0{_plain(v.value, 3)}\u00a0±\u00a0{_plain(1.96 * v.sigma, 1)}{_unit(v.unit)}"
+
+
+def _plain(number: float, digits: int) -> str:
+    """A number to so many digits, without an exponent if it is large."""
+    return f"{float(f'{number:.{digits}g}'):g}"
 
 
 def _unit(unit: str) -> str:

@@ -17,6 +17,7 @@ from geomdrap.measurement.marks import mark_spacing
 if TYPE_CHECKING:
     from geomdrap.criticism.search import Round
 
+SHORTER = 0.001  # strain of yarns that are not as long as they were
 ABOUT_A_MARK = 0.35  # of the spacing of the marks: a ply that far off may have its labels off by one
 SEEN = {
     "along": "along the warp",
@@ -57,12 +58,14 @@ def hints_for(
             f"{left.size:.1f} times the noise is left, {places}: a ply whose yarns buckled as it locked rests in one "
             "of many states of like energy, and no model foretells which"
         )
+    if LOCKING not in candidates and verdict not in (AMBIGUOUS, UNKNOWN) and left.doubtful:
+        hints.append(f"{left.size:.1f} times the noise is left, {places}, {_of_what(left)}")
     if verdict == UNKNOWN:
         hints.append(
             f"something is left that no effect of the library explains, {left.size:.1f} times the noise, {places}"
         )
         hints += trends(experiment, model)
-    hints += misplaced(experiment, placement)
+    hints += [*misplaced(experiment, placement), *shortened(model, verdict)]
     if experiment.measurement.shear is None:
         hints.append("the table has no shear angles: springback and other effects on shear alone cannot be seen")
     if not experiment.measurement.labelled:
@@ -71,6 +74,29 @@ def hints_for(
             "the shear as it is are not visible; draw a grid on the flat fabric to see them"
         )
     return tuple(f"{hint}." for hint in hints)
+
+
+def _of_what(left: Leftover) -> str:
+    """What a small leftover may be."""
+    if left.structured:
+        return "which is no noise, but little beside what is explained"
+    return (
+        f"more than noise and scatter leave as a rule (by chance {left.p_value:.1g}): more points would show whether "
+        "something else is missing, too"
+    )
+
+
+def shortened(model: Fitted, verdict: str) -> list[str]:
+    """What yarns that are shorter than they were may stand for, if both families certainly are."""
+    if "yarn-extension" not in verdict.split("+"):
+        return []
+    values = [float(model.values[k]) for _, k in model.parameters_of("yarn-extension")]
+    if not all(v < -SHORTER for v in values):
+        return []
+    return [
+        "warp and weft are both shorter than they were, which no tension does: a ply or tool that has shrunk, or a "
+        "table in a slightly other scale, looks like this"
+    ]
 
 
 def misplaced(experiment: Experiment, placement: Sequence[Value]) -> list[str]:

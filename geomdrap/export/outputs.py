@@ -138,8 +138,12 @@ def _part_of(progress: Callable[[float], None], before: float, weight: float, sh
     progress(before + weight * share)
 
 
-def left_over(folder: Path, files: Iterable[Path]) -> list[str]:
-    """Name the result files in ``folder`` that are not among ``files``: they are of another, earlier run."""
+def left_over(folder: Path, files: Iterable[Path], known: Iterable[str] | None = None) -> list[str]:
+    """Name the result files in ``folder`` that are not among ``files``: they are of another, earlier run.
+
+    ``known`` are the names that there can be; those of a drape if None.
+    """
     written = {file.name for file in files}
-    known = [output.file for outputs in OUTPUTS.values() for output in outputs]
+    if known is None:
+        known = [output.file for outputs in OUTPUTS.values() for output in outputs]
     return [name for name in known if name not in written and (folder / name).exists()]

@@ -8,6 +8,7 @@ import numpy as np
 
 from geomdrap.errors import MeasurementError
 from geomdrap.measurement.marks import mark_spacing
+from geomdrap.measurement.plausible_frame import other_frame
 from geomdrap.measurement.plausible_yarns import check_directions
 
 if TYPE_CHECKING:
@@ -104,11 +105,14 @@ def _labels_agree(measurement: Measurement, factor: float) -> bool:
 
 
 def looks_wrong(net: Net, measurement: Measurement, found: Matched) -> tuple[str, ...]:
-    """Warnings where labels, directions or shear angles are probably others than the table says.
+    """Warnings where labels, frame, directions or shear angles are probably others than the table says.
 
     Directions and shear are held against those predicted at the labels: where these are wrong they say nothing.
     """
     labels = check_labels(net, measurement)
+    frame = None if labels else other_frame(net, measurement, found)
+    if frame:
+        return (f"{measurement.source}: {LOOKS_WRONG} {frame}",)
     return labels or (
         *check_directions(measurement, found),
         *check_shear(measurement.shear, found.shear, measurement.source),

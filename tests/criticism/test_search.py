@@ -17,7 +17,7 @@ from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.fitted_on import again, further
 from geomdrap.criticism.model import Fitted, Look, Model, Predictor, add_effect
 from geomdrap.criticism.start import Glance, glance, start_values
-from geomdrap.criticism.words import misplaced
+from geomdrap.criticism.words import misplaced, shortened
 from geomdrap.measurement.outliers import Outlier
 
 POINTS = 60
@@ -298,3 +298,14 @@ def test_a_ply_at_the_end_of_where_it_is_looked_for_is_not_found(dangle, lost):
     placement = [Value("du", 1.0, 0.1, "mm"), Value("dv", 2.0, 0.1, "mm"), Value("dangle", dangle, np.inf, "deg")]
     bare = SimpleNamespace(measurement=SimpleNamespace(u=None, v=None))
     assert "dangle" in misplaced(bare, placement)[0]
+
+
+def test_yarns_that_are_all_shorter_are_said_to_be_no_matter_of_tension():
+    model = Model(("yarn-extension",))
+
+    def found(warp, weft):
+        return Fitted(model, Fit(np.array([0.0, 0.0, 0.0, warp, weft]), np.zeros(3), np.zeros((3, 5)), 0.0))
+
+    assert "shrunk" in shortened(found(-0.009, -0.0094), "yarn-extension")[0]
+    assert not shortened(found(-0.009, 0.002), "yarn-extension")
+    assert not shortened(found(-0.009, -0.0094), "unknown")

@@ -10,18 +10,26 @@ import pytest
 from geomdrap.criticism.diagnosis import Tried, Value
 from geomdrap.criticism.evidence import Evidence
 from geomdrap.criticism.likelihood import Scatter
-from geomdrap.criticism.story import fitted_words, table_rows, unseen_sentences, verdict_sentence
+from geomdrap.criticism.story import (
+    fitted_words,
+    outlier_sentence,
+    rival_sentence,
+    table_rows,
+    unseen_sentences,
+    verdict_sentence,
+)
 from geomdrap.effects import make
 
 WIDE = float("inf")
 
 
-def tried(name, *amounts, sigma=0.01, selected=False, looked_at_only=False):
+def tried(name, *amounts, sigma=0.01, selected=False, looked_at_only=False, **known):
     """An effect with the amounts that would be seen of its parameters, at their typical values."""
     own = make(name).parameters
     values = tuple(Value(p.name, p.typical, sigma, p.unit) for p in own)
     visible = tuple((p.name, amount, p.unit) for p, amount in zip(own, amounts, strict=True))
-    evidence = Evidence(name, *[0.0] * (len(Evidence.__dataclass_fields__) - 1))
+    nothing = dict.fromkeys(Evidence.__dataclass_fields__, 0.0)
+    evidence = Evidence(**{**nothing, "name": name, "includes": (), **known})
     return Tried(name, values, evidence, 0.1, 0.2, 1.0, (), visible, selected, looked_at_only)
 
 
@@ -71,7 +79,7 @@ def test_the_interval_is_said_to_be_that_of_95_percent_wherever_it_stands():
     assert verdict_sentence(d).replace("\u00a0", " ") == "The model lacks weave-skew (skew 2 ± 0.02 deg; 95 %)."
     assert table_rows(d)[0][1] == "fitted (± 95 %)"
     d.verdict, d.placement = "placement", (Value("du", 3.0, 0.1, "mm"),)
-    assert verdict_sentence(d).replace("\u00a0", " ").endswith("du 3 ± 0.2 mm (95 %).")
+    assert "du 3 ± 0.2 mm (95 %)." in verdict_sentence(d).replace("\u00a0", " ")
     assert np.ptp(d.placement[0].interval) == pytest.approx(2 * 1.96 * 0.1)
 
 
@@ -82,4 +90,33 @@ def test_what_speaks_against_the_answer_is_said_with_it():
     for d.confidence, said in ((0.08, "8"), (0.154, "15")):
         assert verdict_sentence(d).endswith(f"These data leave that open (confidence {said} %): measure more points.")
     d.warnings = ("t.csv: it looks as if u and v are swapped: half of the points would then lie nearer",)
-    assert verdict_sentence(d).startswith("The labels of the table look wrong: see the warning. If they are right: N")
+    assert verdict_sentence(d).startswith("The table looks wrong: see the warning. If it is right: N")
+
+
+def test_a_size_that_cannot_be_is_no_rival_nor_is_what_these_data_do_not_show():
+    rows = [
+        tried("weave-skew", 0.1, selected=True),
+        tried("shear-asymmetry", 0.1, share=0.5, in_range=False),  # found where it does nothing
+        tried("springback", None, share=0.6, in_range=True),
+        tried("thickness", 0.2, share=0.3, in_range=True),
+    ]
+    assert rival_sentence(diagnosis("weave-skew", *rows)).startswith("The next best, thickness, explains 30 %")
+    assert rival_sentence(diagnosis("weave-skew", *rows[:3])).startswith("No other effect of a size that can be")
+
+
+def test_large_numbers_are_written_without_an_exponent():
+    row = tried("bridging", 172.4, sigma=36.0, selected=True)
+    d = diagnosis("none", Tried(**{**vars(row), "cv_error": 397256.05, "selected": False}))
+    cells = " ".join(table_rows(d)[1] + tuple(unseen_sentences(d))).replace("\u00a0", " ")
+    assert "397256" not in cells
+    assert "397000" in cells
+    assert "± 70 mm" in cells
+    assert "radius 170 mm" in cells
+
+
+def test_lines_set_apart_are_named_once_and_the_rest_counted():
+    d = diagnosis("none")
+    d.outliers = [SimpleNamespace(line=line) for line in (5, 3, 3, *range(10, 24))]
+    assert outlier_sentence(d).endswith("lines 3, 5, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19 and 4 more.")
+    d.outliers = []
+    assert outlier_sentence(d) is None

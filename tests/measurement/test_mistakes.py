@@ -13,6 +13,7 @@ from geomdrap.criticism.compare import compare_net
 from geomdrap.measurement.match import match
 from geomdrap.measurement.outliers import find_outliers
 from geomdrap.measurement.plausible import check_labels, looks_wrong, require_on_part
+from geomdrap.surface import shapes
 
 SIGMA = 0.2
 
@@ -210,3 +211,50 @@ def test_points_in_another_frame_are_refused(case):
 def test_a_small_patch_in_the_right_unit_is_no_mistake(case):
     net, m = case
     assert require_on_part(net.surface, m.take(np.hypot(m.u, m.v) < 40.0)) == ()
+
+
+@pytest.fixture(scope="module")
+def lopsided():
+    """A part that no mirror leaves as it is, and marks on it."""
+    plane = shapes.plane(240.0, 200.0, 6.0)
+    x, y = plane.points[:, 0], plane.points[:, 1]
+    height = 40.0 * np.exp(-((x - 40.0) ** 2 + (y - 20.0) ** 2) / 2500.0) + 8e-4 * x * y
+    part = gd.Surface(np.column_stack([x, y, height]), plane.triangles)
+    net = gd.drape(part, (5.0, 3.0, 0.0), 20.0, 6.0, project=True)
+    u, v = (a.ravel() for a in np.meshgrid(np.arange(-80.0, 81.0, 20.0), np.arange(-70.0, 71.0, 20.0)))
+    points = net.interpolate(u, v)[0]
+    known = np.isfinite(points[:, 0])
+    return net, gd.Measurement("marks.csv", points[known], u[known], v[known])
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda p: p * [1.0, 1.0, -1.0], "mirrored"),
+        (lambda p: p * [1.0, -1.0, 1.0], "mirrored"),
+        (lambda p: p + [0.0, 0.0, 30.0], "another frame, moved by (0, 0, 30) mm:"),
+        (lambda p: p[:, [2, 0, 1]] + [5.0, 0.0, 0.0], "turned by 120 degrees"),
+    ],
+)
+def test_points_in_another_frame_are_noticed(lopsided, change, words):
+    net, m = lopsided
+    wrong = replace(m, points=change(m.points))
+    said = looks_wrong(net, wrong, match(net, wrong))
+    assert len(said) == 1
+    assert words in said[0]
+
+
+@pytest.mark.parametrize("change", [lambda p: p, lambda p: p + [0.0, 0.0, 2.0], lambda p: p + [2.0, -3.0, 0.0]])
+def test_a_thick_ply_or_one_laid_elsewhere_is_in_no_other_frame(lopsided, change):
+    net, m = lopsided
+    other = replace(m, points=change(m.points))
+    assert not looks_wrong(net, other, match(net, other))
+
+
+def test_a_ply_laid_far_from_its_place_is_on_the_part_still(lopsided):
+    net, m = lopsided
+    points = net.interpolate(m.u + 12.0, m.v - 9.0)[0]
+    known = np.isfinite(points[:, 0])
+    other = m.take(np.flatnonzero(known))
+    other = replace(other, points=points[known])
+    assert not any("frame" in words for words in looks_wrong(net, other, match(net, other)))
