@@ -96,7 +96,7 @@ def summary_of(fits: Mapping[str, CouponFit], verdict: CurveVerdict | None) -> l
         ):
             share = _share(100.0 * sigma / value)
             lines.append(
-                f"  {name:15} {value:.5g} ± {sigma:.2g} {UNITS[name]} ({share}; 95 %: {low:.4g} to {high:.4g})"
+                f"  {name:15} {f'{value:.5g} {UNITS[name]}'.strip()} (95 %: {low:.4g} to {high:.4g}; sigma {share})"
             )
     return lines if verdict is None else [*lines, *_story(verdict)]
 

@@ -86,7 +86,7 @@ def _parameters(axes: Any, fits: Mapping[str, CouponFit]) -> None:
             middle, y = found.values[k] / first.values[k], k + apart * number
             colour = COLOURS[number % len(COLOURS)]
             axes.errorbar(middle, y, xerr=[[middle - low], [high - middle]], fmt="o", color=colour, capsize=4)
-            words = f"{name} {found.values[k]:.4g} ± {found.sigma[k]:.2g} {PARAMETER_UNITS[name]}".strip()
+            words = f"{name} {found.values[k]:.4g} {PARAMETER_UNITS[name]}".strip()
             axes.annotate(
                 words if len(fits) == 1 else f"{words} ({series})", (middle, y), (0, 8), textcoords="offset points",
                 ha="center", fontsize=8.5, color=palette.INK,
