@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from geomdrap.cli.coupon_fit_summary import summary_of, warnings_of
 from geomdrap.cli.coupon_options import cloth_of, cloth_options, yarn_options
 from geomdrap.cli.options import folder_option, json_option, quiet_option
 from geomdrap.cli.values import Names, Number
+from geomdrap.errors import FormingError
 
 if TYPE_CHECKING:
     from geomdrap.criticism.curve import Curve
@@ -29,7 +31,7 @@ LENGTH, WIDTH = 150.0, 30.0  # mm, of a strip unless told otherwise
 @click.argument("test", type=click.Choice(TESTS))
 @click.argument("measured", type=click.Path(path_type=Path))
 @click.option(
-    "--fit", "names", type=Names(FITTED), help="What is fitted.  [default: what the test and its readings show]"
+    "--fit", "names", type=Names(FITTED, ""), help="What is fitted.  [default: what the test and its readings show]"
 )
 @click.option(
     "--also",
@@ -114,12 +116,13 @@ def fit(
     announce_compilation(quiet, "forming")
     with Progress(quiet) as progress:
         progress.step("Fitting")
-        fits = {
-            name: fit_coupon.fit_coupons(
-                [fit_coupon.Measured(test, columns, settings), *more], cloth, names, progress.tell
-            )
-            for name, columns in readings.items()
-        }
+        with _naming(measured):
+            fits = {
+                name: fit_coupon.fit_coupons(
+                    [fit_coupon.Measured(test, columns, settings), *more], cloth, names, progress.tell
+                )
+                for name, columns in readings.items()
+            }
         progress.step("Asking what is missing")
         verdict, silent = _lacks(curves, cloth, settings, split, progress.share) if curves else (None, silent)
         progress.step("Writing")
@@ -130,6 +133,17 @@ def fit(
     elif not quiet:
         click.echo("\n".join(summary_of(fits, verdict) + [f"wrote {path}" for path in files.values()]))
     return 0 if all(found.identified.converged for found in fits.values()) else 1
+
+
+@contextmanager
+def _naming(table: Path) -> Iterator[None]:
+    """Name the table in what is said against its readings."""
+    try:
+        yield
+    except FormingError as error:
+        if str(table) in str(error):
+            raise
+        raise FormingError(f"{table}: {error}") from error
 
 
 def _settings(test: str, asked: dict[str, Any]) -> dict[str, Any]:

@@ -200,10 +200,13 @@ class Size(click.ParamType):
 
 
 class Names(click.ParamType):
-    """A list of names with commas between, each of them known; ``none`` stands for the empty list."""
+    """A list of names with commas between, each of them known.
 
-    def __init__(self, known: tuple[str, ...]):
-        self.known = known
+    ``none`` stands for the empty list, for no ``what``; where that is empty it is not offered.
+    """
+
+    def __init__(self, known: tuple[str, ...], what: str = "files"):
+        self.known, self.what = known, what
         self.name = "name,name,..."
 
     def convert(
@@ -218,7 +221,8 @@ class Names(click.ParamType):
         if "none" in asked:
             self.fail(f"'{value}' asks for none and for others; leave out one or the other", param, ctx)
         for name in sorted(asked.difference(self.known)):
-            self.fail(f"'{name}' is not one of {', '.join(self.known)} (or none, for no files)", param, ctx)
+            or_none = f" (or none, for no {self.what})" if self.what else ""
+            self.fail(f"'{name}' is not one of {', '.join(self.known)}{or_none}", param, ctx)
         return tuple(name for name in self.known if name in asked)
 
 

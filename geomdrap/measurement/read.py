@@ -18,6 +18,8 @@ UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 SIGMAS = ("sigma_xyz", "sigma_shear", "sigma_direction")
 OPTIONAL = ("shear", *SIGMAS, "warp_x", "warp_y", "warp_z", "weft_x", "weft_y", "weft_z")
 """Quantities that may be open (an empty cell, nan, -, n/a) in some rows."""
+ABOUT_RIGHT = 30.0
+"""Degrees about 90: half of the angles between yarns lie there."""
 
 
 def _unused(heading: str) -> str:
@@ -93,7 +95,7 @@ def _numbers(table: Table, chosen: Chosen, name: str) -> np.ndarray:
         text = cells[place]
         value = number_of(text.removesuffix("°").rstrip() if name in ANGLES else text, comma)
         if value is None:
-            _refuse(table, k, chosen.heading[name], f"'{text[:40]}' is not a number")
+            _refuse(table, k, chosen.heading[name], f"'{text[:40]}' is not a number; correct it")
         elif math.isinf(value):
             _refuse(table, k, chosen.heading[name], f"'{text}' is not finite")
         elif math.isnan(value) and name not in OPTIONAL:
@@ -139,6 +141,8 @@ def _shear(table: Table, chosen: Chosen, cells: Mapping[str, np.ndarray]) -> np.
     if len(beyond):
         k = int(beyond[0])
         why = f"{shear[k]:g} is no shear angle: it must lie between -90 and 90 degrees"
+        if np.nanmin(shear) > 0.0 and abs(np.nanmedian(shear) - 90.0) < ABOUT_RIGHT:
+            why += "; if the column holds the angle between warp and weft, give 90 less it"
         _refuse(table, k, chosen.heading["shear"], why)
     return shear
 

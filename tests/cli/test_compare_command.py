@@ -49,6 +49,13 @@ def test_all_files_are_written_and_the_json_is_that_of_the_design(run, files):
     assert {k: v for k, v in stored.items() if k != "files"} == {k: v for k, v in document.items() if k != "files"}
 
 
+def test_files_of_an_earlier_comparison_are_warned_of(run, files):
+    command = "compare", "part.obj", "measured.csv", "--setup", "setup.toml", "-o", "out", "--outputs"
+    assert "earlier run" not in run(*command, "csv").stderr
+    assert "residuals.csv in out is of an earlier run: remove it" in run(*command, "json").stderr
+    assert "earlier run" not in run(*command, "none").stderr
+
+
 def test_the_table_has_a_row_for_each_point(run, files):
     run("compare", "part.obj", "measured.csv", "--setup", "setup.toml", "-o", "out", "--outputs", "csv")
     rows = list(csv.DictReader((files / "out" / "residuals.csv").open()))

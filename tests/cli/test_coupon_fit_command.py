@@ -214,13 +214,18 @@ def test_fit_tells_the_story_of_a_real_curve_and_its_doubt(run: Callable[..., Re
             ("picture-frame", "frame.csv", "--fit", "undulation"),
             "does not show undulation; choose from resin-modulus",
         ),
+        (("picture-frame", "frame.csv", "--fit", "foo"), "'foo' is not one of fibre-modulus"),
+        (("uniaxial", "one.csv"), "one.csv: there are too few readings"),
     ],
 )
 def test_a_fit_that_cannot_be_is_refused(
     error_of: Callable[..., str], tmp_path: Path, arguments: tuple, said: str
 ) -> None:
     _frame_twin(tmp_path / "frame.csv")
-    assert said in error_of("coupon", "fit", *arguments)
+    (tmp_path / "one.csv").write_text("displacement,force\n1,20\n")
+    message = error_of("coupon", "fit", *arguments)
+    assert said in message
+    assert "no files" not in message
 
 
 def _strip_twin(path: Path, angle: float, furthest: float) -> None:
