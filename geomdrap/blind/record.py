@@ -54,7 +54,7 @@ def reveal(folder: Path, anyway: bool = False) -> dict[str, Any]:
     GeomdrapError if the seal is broken or the verdict was given for another one, and, unless ``anyway``, if there is
     no verdict, if it is of an ``earlier`` version without a digest, if it was ``edited`` afterwards, or if a file
     that was solved is not the one that was sealed (``changed``): ``grade`` is None then. ``changed_since`` names
-    files that have changed since they were solved.
+    files that have changed since they were solved, or sealed where they were not.
     """
     truth = unseal(folder)
     solved = _read_solved(folder)
@@ -68,7 +68,7 @@ def reveal(folder: Path, anyway: bool = False) -> dict[str, Any]:
     result: dict[str, Any] = {"schema": "geomdrap.blind-reveal/1", "seal": read_seal(folder), "truth": truth}
     result.update({"revealed_at": _now(), "verdict": None, "candidates": [], "grade": None, "right": None})
     result.update({"changed": changed, "edited": edited, "earlier": earlier})
-    result["changed_since"] = _changed_since(folder, seen)
+    result["changed_since"] = _changed_since(folder, seen if solved else truth.get("files", {}))
     result["parameters"] = parameters(truth, solved["diagnosis"] if solved else {})
     if solved is not None and not (changed or edited or earlier):
         graded = grade(truth["answer"], solved["verdict"], solved["candidates"])

@@ -149,6 +149,7 @@ def _lines(result: dict[str, Any]) -> list[str]:
     truth = result["truth"]
     hidden = f"{truth['answer']} ({', '.join(truth['effect'])})" if truth["answer"] == "unknown" else truth["answer"]
     lines = [f"seal {result['seal']} holds", f"hidden  {hidden}"]
+    solved = result["grade"] is not None or result["changed"] or result["edited"] or result["earlier"]
     if result["changed"]:
         lines.append(f"changed {', '.join(result['changed'])}: not what was sealed, so nothing is graded")
     if result["edited"]:
@@ -156,8 +157,9 @@ def _lines(result: dict[str, Any]) -> list[str]:
     if result["earlier"]:
         lines.append("earlier solved.json: of a version that wrote no digest, so nothing is graded")
     if result["changed_since"]:
-        on_sealed = "" if result["changed"] else "; the verdict is on what was sealed"
-        lines.append(f"since   {', '.join(result['changed_since'])} changed after solving{on_sealed}")
+        on_sealed = "" if result["changed"] or not solved else "; the verdict is on what was sealed"
+        after = "solving" if solved else "sealing"
+        lines.append(f"since   {', '.join(result['changed_since'])} changed after {after}{on_sealed}")
     if result["grade"] is not None:
         rivals = f" ({', '.join(result['candidates'])})" if result["verdict"] == "ambiguous" else ""
         lines += [f"found   {result['verdict']}{rivals}", f"grade   {result['grade']}"]

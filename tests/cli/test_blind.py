@@ -70,6 +70,10 @@ def test_an_unsolved_set_is_revealed_only_anyway(tmp_path):
     code, out, _ = run("reveal", tmp_path, "--anyway")
     assert code == 0
     assert "hidden  none" in out
+    assert "since" not in out
+    with (tmp_path / "measured.csv").open("a") as table:
+        table.write("# one line more\n")
+    assert "since   measured.csv changed after sealing" in run("reveal", tmp_path, "--anyway")[1]
     code, _, err = run("solve", tmp_path)
     assert code == 2
     assert "revealed" in err
