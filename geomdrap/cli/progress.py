@@ -107,7 +107,8 @@ class Progress:
 def announce_compilation(quiet: bool, package: str = "fishnet") -> None:
     """Say once, before the first run on a machine, why it takes longer; ``package`` holds the kernels used."""
     if not quiet and not kernels_are_compiled(package):
-        click.echo("Note: compiling the kernels for this machine, which takes a minute, once", err=True)
+        more = "less where other commands first run"
+        click.echo(f"Note: compiling the kernels for this machine, once: a minute or two, {more}", err=True)
 
 
 def kernels_are_compiled(package: str = "fishnet") -> bool:
