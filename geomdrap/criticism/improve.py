@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from geomdrap.criticism.diagnose import diagnose
-from geomdrap.criticism.diagnosis import UNKNOWN, Diagnosis
+from geomdrap.criticism.diagnosis import UNKNOWN, Diagnosis, Value
 
 if TYPE_CHECKING:
     from geomdrap.fishnet import Effect
@@ -43,6 +44,13 @@ class Improvement:
             return (f"one of several that explain the measurement equally well: {', '.join(d.candidates)}",)
         return ()
 
+    def _values(self) -> Iterator[tuple[str, tuple[Value, ...]]]:
+        """Placement and effects of the model with their values and standard deviations."""
+        names = [e.name for e in self.effects]
+        known = {t.name: t.values for t in self.diagnosis.tried if t.selected}
+        known["placement"] = self.diagnosis.placement
+        yield from ((name, known[name]) for name in names if name in known)
+
     def as_dict(self, model: str | None = None) -> dict[str, Any]:
         """The improvement as JSON has it (schema geomdrap.improve/1); ``model`` is the path of the model file."""
         from geomdrap.criticism.diagnosis import rounded
@@ -64,7 +72,9 @@ class Improvement:
             "verdict": d.verdict,
             "candidates": list(d.candidates),
             "unexplained": rounded(self.unexplained),
+            "confidence": rounded(d.confidence),
             "parameters": {e.name: {k: rounded(v) for k, v in e.values.items()} for e in d.effects},
+            "sigma": {name: {v.name: rounded(v.sigma) for v in values} for name, values in self._values()},
             "model": model,
             "hints": list(d.hints),
             "warnings": list(d.warnings),

@@ -48,6 +48,11 @@ def test_what_improve_finds_takes_the_error_of_compare_to_the_noise(ply: Path, t
     assert found["schema"] == "geomdrap.improve/1"
     assert found["verdict"] == "weave-skew"
     assert [step["added"] for step in found["steps"]] == [None, "placement", "weave-skew"]
+    assert {name: list(values) for name, values in found["sigma"].items()} == {
+        name: list(values) for name, values in found["parameters"].items()
+    }
+    assert 0.0 < found["sigma"]["weave-skew"]["skew"] < 0.2
+    assert found["confidence"] > 0.9
     assert (tmp_path / "improve.png").stat().st_size > 10_000
     before, after = (
         run("compare", ply, "--outputs", "none"),
