@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -116,7 +116,7 @@ def fit(
     announce_compilation(quiet, "forming")
     with Progress(quiet) as progress:
         progress.step("Fitting")
-        with _naming(measured):
+        with _naming(measured) if not more else nullcontext():
             fits = {
                 name: fit_coupon.fit_coupons(
                     [fit_coupon.Measured(test, columns, settings), *more], cloth, names, progress.tell

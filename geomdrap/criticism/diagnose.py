@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 Progress = Callable[[float, str], None]
 
 MOST_EFFECTS = 2
+STRAIN = "yarn-extension"
 SHIFTED = 0.5  # mm: a seed that lies further off than this is named
 TURNED = 0.4  # degrees: likewise
 CERTAIN = 3.0  # standard deviations of the placement
@@ -139,6 +140,7 @@ def conclude(
     verdict, candidates = _verdict(end)
     steps = _steps(experiment, rounds, names, model)
     placement = values_of(experiment, model, scatter, "placement")
+    stretched = values_of(experiment, model, scatter, STRAIN) if STRAIN in verdict.split("+") else ()
     return Diagnosis(
         verdict=verdict,
         candidates=candidates,
@@ -152,7 +154,7 @@ def conclude(
         scatter=scatter,
         leftover=left,
         outliers=outliers_of(experiment, model),
-        hints=hints_for(experiment, rounds, verdict, candidates, model, left, placement),
+        hints=hints_for(experiment, rounds, verdict, candidates, model, left, placement, stretched),
         notes=(*notes, *said_of_coarser(meant, experiment, model), *_failures(experiment, rounds)),
     )
 

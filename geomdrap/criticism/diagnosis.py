@@ -121,6 +121,7 @@ class Diagnosis:
                 "p_value": rounded(self.leftover.p_value),
                 "size": rounded(self.leftover.size),
                 "structured": self.leftover.structured,
+                "doubtful": self.leftover.doubtful,
             },
             "hints": list(self.hints),
             "warnings": list(self.warnings),

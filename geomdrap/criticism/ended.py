@@ -80,10 +80,10 @@ def left_over(experiment: Experiment, model: Fitted, scatter: Scatter) -> Leftov
     return leftover(experiment, rows, judge, Residuals(model.fit.residual[rows], model.fit.slopes[rows]), scatter)
 
 
-def likeliest(experiment: Experiment, model: Fitted, before: Scatter) -> Scatter:
-    """The likeliest scatter of a model on finer nets, if there was any ``before``: coarse ones added to that."""
-    if before.size == 0.0:
-        return before
+def _anew(meant: Experiment, experiment: Experiment, model: Fitted, before: Scatter) -> Scatter:
+    """The likeliest scatter of a model on nets finer than meant, if there was some ``before``."""
+    if before.size == 0.0 or experiment is meant:
+        return before  # on coarse nets it also holds what these get wrong
     rows = np.isfinite(model.fit.residual)
     residuals = Residuals(model.fit.residual[rows], model.fit.slopes[rows])
     return judge_of(experiment, rows).best_scatter([residuals], [0])[0][0]
@@ -100,7 +100,7 @@ def ended(meant: Experiment, rounds: Sequence[Round], done: Callable[[str], None
         alike, rounds = tuple(ends), [*rounds[:k], seen, *rounds[k + 1 :]]
         names, scatter = [*names[:k], alike[0]], seen.trial(alike[0])[1]
     experiment, model = ends[alike[0]] if alike else final(meant, model, scatter)
-    scatter = scatter if experiment is meant else likeliest(experiment, model, scatter)
+    scatter = _anew(meant, experiment, model, scatter)
     left = left_over(experiment, model, scatter)
     # a plateau that the model found does not foretell is no matter of chance: nothing else makes one
     if locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):
@@ -109,11 +109,13 @@ def ended(meant: Experiment, rounds: Sequence[Round], done: Callable[[str], None
             names = [LOCKING]
             model, scatter = rounds[0].trial(LOCKING)
             experiment, model = final(meant, model, scatter)
+            scatter = _anew(meant, experiment, model, scatter)
             left = left_over(experiment, model, scatter)
     if LOCKING in names:
         model = doubted(experiment, rounds[0], model)
     model = widened(experiment, model, scatter)
-    near = {name: widened(*ends[name], rounds[len(names) - 1].trial(name)[1]) for name in alike[1:] if name in ends}
+    coarse = {name: rounds[len(names) - 1].trial(name)[1] for name in alike[1:] if name in ends}
+    near = {name: widened(*ends[name], _anew(meant, *ends[name], before)) for name, before in coarse.items()}
     unexplained = left.structured and leaves(rounds[0], model, UNEXPLAINED) and names != [LOCKING]
     if unexplained and len(alike) == 1:
         others = alike_in_what_they_leave(rounds[len(names) - 1].evidence)

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.criticism.kept import kept
+from geomdrap.criticism.prediction import predicted
 from geomdrap.criticism.smooth import Split, smoothed
-from geomdrap.effects.crossing_slip import CrossingSlip
 from geomdrap.fishnet import Effect, Fabric, Net, drape
 from geomdrap.fishnet.effect import fabric_with, in_order, net_with, surface_with
 from geomdrap.fishnet.held_warp import HeldWarp
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from geomdrap.measurement import Measurement
     from geomdrap.surface import Surface
 
-CHANNELS = ("along", "across", "normal", "shear", "warp", "weft")
 KEPT = 12  # surfaces with effects on them that are kept, and corrections of coarse nets
 KEPT_NETS = 3
 ALIKE = 0.3  # of their typical sizes: values differ by less where a net is relaxed from another one
@@ -39,7 +38,7 @@ FINE, COARSE = 7000, 900  # nodes of the net, for what costs milliseconds and fo
 class Experiment:
     """Measured values, in one order for all models.
 
-    ``at`` (n, 2) mm fabric coordinates of the points; ``channels`` (c,) names of ``CHANNELS``; ``mask`` (n, c) which
+    ``at`` (n, 2) mm fabric coordinates of the points; ``channels`` (c,) names of ``prediction.CHANNELS``; ``mask`` (n, c) which
     were measured; ``noise`` (m,) their standard deviations, mm or degrees; ``measured`` (m,); vectors hold the true
     entries of ``mask``, channel by channel. ``refused``: why a drape with an effect could not be made at some of the
     values tried, by its name; ``warnings`` of the table. ``frames`` (n, 3, 3): along the warp, across it, and the
@@ -143,24 +142,26 @@ class Experiment:
         if not any(e.costly for e in others):
             return None
         if not fabric_with(in_order(others), Fabric()).relaxes:
-            return self._slid_beside(effects, others)
+            return self._on_net_beside(effects, others)
         near, lay, (surface, acting) = self.draped(effects, self.pitches[1]), self.layup, self._with_hold(others)
         if restless(near):
             return None
         laid = lay.origin, lay.angle, near.pitch, Fabric(), in_order(acting), lay.reference, lay.project
-        net = swayed(near, laid_down(surface, *laid))
-        return None if net is None else self._flat(net_with(in_order(acting), net)) - self._flat(near)
+        swung = swayed(near, laid_down(surface, *laid))
+        net = None if swung is None else net_with(in_order(acting), swung, near)
+        return None if net is None or restless(net) else self._flat(net) - self._flat(near)
 
-    def _slid_beside(self, effects: Sequence[Effect], others: Sequence[Effect]) -> np.ndarray | None:
-        """Likewise where crossings slide. How far they do hardly depends on where the ply is laid."""
+    def _on_net_beside(self, effects: Sequence[Effect], others: Sequence[Effect]) -> np.ndarray | None:
+        """Likewise where what is costly acts on the net, and where the ply is laid hardly matters to that."""
         acting = [e for e in in_order(others) if e.costly or e.stage == "net"]
-        if not acting or not isinstance(acting[-1], CrossingSlip) or sum(e.costly for e in acting) > 1:
+        if not acting or type(acting[-1]).beside is Effect.beside or sum(e.costly for e in acting) > 1:
             return None
-        plain = [[e for e in some if not e.costly] for some in (effects, others)]
-        if _apart(*map(in_order, plain)) > 0.0:
-            own = [[repr_of(e) for e in some if e.costly] for some in (effects, others)]
-            there, here = (self._flat(self.draped(some)) for some in reversed(plain))
-            return there - here if own[0] == own[1] else None
+        same = [[repr_of(e) for e in in_order(some) if e.stage != "placement"] for some in (effects, others)]
+        if same[0] == same[1]:  # only the placement differs
+            there, here = (self._flat(self.draped([e for e in some if not e.costly])) for some in (others, effects))
+            return there - here
+        if _apart(*(in_order([e for e in some if not e.costly]) for some in (effects, others))) > 0.0:
+            return None
         near = self.draped(effects, self.pitches[1])
         net = None if restless(near) else acting[-1].beside(near)
         return None if net is None else self._flat(net) - self._flat(near)
@@ -274,30 +275,3 @@ def repr_of(effect: Effect) -> str:
 def flatten(table: np.ndarray, mask: np.ndarray) -> np.ndarray:
     """The true entries (m,) of a table (n, c), channel by channel."""
     return table.T[mask.T]
-
-
-def predicted(net: Net, measurement: Measurement, frames: np.ndarray, channels: tuple[str, ...]) -> np.ndarray:
-    """The model's table (n, c): positions in mm along the frames, shear in degrees, turns of the yarns in degrees.
-
-    Directions have no zero of their own: their value is the turn from what was measured to the model.
-    """
-    from geomdrap.measurement.match import match
-
-    found = match(net, measurement)
-    out = np.full((len(measurement), len(channels)), np.nan)
-    for c, name in enumerate(channels):
-        if name in ("along", "across", "normal"):
-            out[:, c] = np.einsum("nk,nk->n", found.point, frames[:, CHANNELS.index(name)])
-        elif name == "shear":
-            out[:, c] = found.shear
-        elif (measured := getattr(measurement, name)) is not None:
-            out[:, c] = turn(measured, getattr(found, name), frames[:, 2])
-    return out
-
-
-def turn(first: np.ndarray, second: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Angle (n,) in degrees from first to second direction (n, 3), counter-clockwise about the normal, mod 180°."""
-    sine = np.einsum("nk,nk->n", np.cross(first, second), normal)
-    cosine = np.einsum("nk,nk->n", first, second)
-    angle = np.degrees(np.arctan2(sine, cosine))
-    return (angle + 90.0) % 180.0 - 90.0

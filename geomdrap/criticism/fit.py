@@ -21,6 +21,8 @@ SMALL, LOOSE = 0.05, 1.0  # of chi-square: a step that promises or gains less en
 LEAST_STEP = 1e-3  # of a parameter's own step, in every parameter: less ends the fit, too
 FARTHEST = 100.0  # of a parameter's own step: no further at once, since slopes tell nothing of what is far
 RAGGED = 1.0  # of chi-square: where a step along fresh slopes promises no more and fails, facets decide
+MANY = 1000  # values: of fewer, what a model leaves is no measure of what it may still gain
+KEPT = 0.5  # of what a step has promised: its slopes hold
 LEAST_DAMPING, MOST_DAMPING = 0.03, 100.0  # of slopes: none, and where a fit stands still
 EASED = 0.3  # of the damping after a step that gains: along a bent valley the next one would fail again without it
 UNSEEN = 5e-3  # noises, over all values together: a parameter whose own step changes less stays where it is
@@ -64,7 +66,8 @@ def fit(
     ``enough`` ``FIRST_STEPS`` after the start, or after slopes were taken anew, but at the latest after ``patience``
     steps, is given up.
     A step that promises or gains less than ``small`` of chi-square ends it, in units of what the model leaves of each
-    value where that is more than noise: it then counts as noise. ``beside`` as of ``take_slopes``.
+    value where that is more than noise: it then counts as noise. That is believed of slopes that are fresh, or by
+    which the last step kept its promise. ``beside`` as of ``take_slopes``.
     If any are ``lasting``, slopes of the parameters after the first so many are taken anew at the start.
     """
     problem = _Problem(predict, measured, whiten, steps, low, high, beside)
@@ -76,12 +79,13 @@ def fit(
         if tried >= first and way.chi2 > enough:
             break
         step, foreseen, is_whole = way.step()
-        # what a step that was cut short leaves tells nothing of the model
-        unit = max(1.0, way.chi2 / len(measured)) if is_whole else 1.0
-        if (np.abs(step) <= LEAST_STEP * steps).all() or foreseen < small * unit:
+        # what is left beside a step that was cut short tells nothing of the model
+        unit = max(1.0, way.chi2 / max(len(measured), MANY)) if is_whole else 1.0
+        nothing = (np.abs(step) <= LEAST_STEP * steps).all()
+        if nothing or (foreseen < small * unit and way.is_trusted):
             break
-        gain = way.go(step)
-        if gain > 0.0:
+        gain = way.go(step, foreseen) if foreseen >= small * unit else 0.0
+        if gain > 0.0 and (gain >= small * unit or way.is_trusted):
             if gain < small * unit:
                 break
         elif not way.is_fresh:  # the slopes are worn: take them anew, once for each place
@@ -110,7 +114,8 @@ class _Problem:
 class _Way:
     """Where a fit has come to: values (p,), residual (m,), slopes (m, p), and how far the slopes are trusted.
 
-    ``good`` are the slopes with which it came here, ``lost`` (m,) what the model does not predict here.
+    ``good`` are the slopes with which it came here, ``lost`` (m,) what the model does not predict here. Slopes are
+    trusted where they are fresh, or as given, or the last step gained what they promised, for the most part.
     """
 
     def __init__(self, problem: _Problem, values: np.ndarray, slopes: np.ndarray | None, are_fresh: bool) -> None:
@@ -120,7 +125,7 @@ class _Way:
         self.residual = np.where(self.lost, 0.0, residual)
         self.chi2 = _square(problem.whiten(self.residual))
         self.slopes = np.zeros((len(residual), len(values))) if slopes is None else slopes.copy()
-        self.good, self.is_fresh, self.damping = self.slopes, are_fresh, 0.0
+        self.good, self.is_fresh, self.is_trusted, self.damping = self.slopes, are_fresh, True, 0.0
 
     def take_slopes(self, lasting: int = 0) -> None:
         """Take the slopes of the parameters after the first so many anew; what cannot move keeps its own."""
@@ -129,7 +134,7 @@ class _Way:
         new = free[free >= lasting]
         taken = take_slopes(p.predict, values, p.predict(values), p.steps, p.low, p.high, new, p.beside)
         self.slopes[:, new] = taken[:, new]
-        self.good, self.is_fresh = self.slopes, self.is_fresh or lasting == 0
+        self.good, self.is_fresh, self.is_trusted = self.slopes, self.is_fresh or lasting == 0, True
 
     def step(self) -> tuple[np.ndarray, float, bool]:
         """The next step (p,), what it promises of chi-square, and whether it is whole."""
@@ -140,9 +145,10 @@ class _Way:
         step = _step(seen, p.whiten(self.residual), self.damping, self.values, p.low, p.high, moves)
         share = min(1.0, FARTHEST / max(float(np.abs(step / p.steps).max()), 1e-300))
         step *= share
-        return step, self.chi2 - _square(p.whiten(self.residual - self.slopes @ step)), share == 1.0
+        foreseen = self.chi2 - _square(p.whiten(self.residual - self.slopes @ step))
+        return step, foreseen, share == 1.0 and self.damping == 0.0
 
-    def go(self, step: np.ndarray) -> float:
+    def go(self, step: np.ndarray, foreseen: float) -> float:
         """Take a step (p,), if it gains anything, and correct the slopes by it. What it gains of chi-square."""
         p = self.problem
         there = p.predict(self.values + step)
@@ -158,7 +164,7 @@ class _Way:
             self.values, self.residual, self.chi2 = self.values + step, new, new_chi2
             self.damping = EASED * self.damping if EASED * self.damping > LEAST_DAMPING else 0.0
             self.lost = np.isnan(there)
-            self.good, self.is_fresh = self.slopes, False
+            self.good, self.is_fresh, self.is_trusted = self.slopes, False, gain > KEPT * foreseen
         return gain
 
     def hold_back(self) -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from geomdrap.criticism.experiment import Experiment
 
 REFINEMENTS = 5  # steps on a finer net
-LAST_STEPS = 3  # of a fit that ends where it nearly was
+LAST_STEPS, PASSES = 3, 3  # of a fit that ends where it nearly was, and how often it may find that it did not
 MORE_STEPS = 18  # of a costly fit, if it is the best
 LESS, FEW = 3.0, 3  # times less than was found is tried, in a few steps
 MOSTLY = 0.9  # of the values: a net that predicts fewer is not compared with another
@@ -51,19 +51,30 @@ def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
 def settled(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
     """A model that is not costly, fitted to the end under another noise, its slopes by central differences.
 
-    Those of a fit are corrected as it goes; those here are of where it began, and are not corrected by short steps.
+    Those of a fit are corrected as it goes; these are of where its last steps began, which short steps do not
+    correct. After long ones they are taken again.
     """
-    model, (low, high) = old.model, old.model.bounds
-    predict, slopes = Predictor(experiment, model), old.fit.slopes.copy()
-    for k, step in enumerate(model.steps):
-        ends = [old.values.copy(), old.values.copy()]
-        ends[0][k] = max(old.values[k] - step, low[k])
-        ends[1][k] = min(old.values[k] + step, high[k])
+    model, predict = old.model, Predictor(experiment, old.model)
+    for _ in range(PASSES):
+        slopes, before = _central_slopes(predict, old), old.values
+        way = before, model.steps, *model.bounds, slopes, LAST_STEPS
+        found = fit(predict, experiment.measured, whiten, *way, are_fresh=True)
+        old = Fitted(model, replace(found, slopes=slopes))
+        if (np.abs(found.values - before) <= model.steps).all():
+            break
+    return old
+
+
+def _central_slopes(predict: Predictor, at: Fitted) -> np.ndarray:
+    """Slopes (m, p) by central differences; those that it has where a value could not be predicted."""
+    slopes, (low, high) = at.fit.slopes.copy(), at.model.bounds
+    for k, step in enumerate(at.model.steps):
+        ends = [at.values.copy(), at.values.copy()]
+        ends[0][k] = max(at.values[k] - step, low[k])
+        ends[1][k] = min(at.values[k] + step, high[k])
         change = (predict(ends[1]) - predict(ends[0])) / (ends[1][k] - ends[0][k])
         slopes[:, k] = np.where(np.isfinite(change), change, slopes[:, k])
-    way = old.values, model.steps, low, high, slopes, LAST_STEPS
-    found = fit(predict, experiment.measured, whiten, *way, are_fresh=True)
-    return Fitted(model, replace(found, slopes=slopes))
+    return slopes
 
 
 def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted) -> Fitted:

@@ -9,8 +9,9 @@ import numpy as np
 
 from geomdrap.criticism.channel_noise import noise_of_channels
 from geomdrap.criticism.cleaned import POSITION, spoilt
-from geomdrap.criticism.experiment import CHANNELS, COARSE, FINE, Experiment, flatten, predicted
+from geomdrap.criticism.experiment import COARSE, FINE, Experiment, flatten
 from geomdrap.criticism.layup import Layup
+from geomdrap.criticism.prediction import CHANNELS, predicted
 from geomdrap.criticism.smooth import note_on
 from geomdrap.errors import MeasurementError
 from geomdrap.measurement.marks import mark_spacing, pitch_for_marks

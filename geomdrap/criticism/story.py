@@ -8,7 +8,7 @@ from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Di
 from geomdrap.effects import make
 from geomdrap.measurement.plausible import LOOKS_WRONG
 
-LARGE = 100.0  # times the noise: errors beyond are given to three digits
+LARGE = 100.0  # numbers from there on are whole, errors of three digits
 MOST_LINES = 12  # of a table: named one by one
 OPEN = 0.2  # confidence: below, the data leave the answer open
 
@@ -32,7 +32,8 @@ def _answer(d: Diagnosis) -> str:
         )
         hidden = 2 * sum(not _sizes(t) for t in d.tried) > len(d.tried)
         nothing = "Nothing that can be seen in these data is missing" if hidden else "Nothing is missing"
-        return f"{nothing}: the model agrees with the measurement down to its noise{scatter}."
+        nearly = "nearly down" if d.leftover.doubtful else "down"
+        return f"{nothing}: the model agrees with the measurement {nearly} to its noise{scatter}."
     if d.verdict == PLACEMENT:
         return (
             f"The ply was laid elsewhere: {_list(d.placement)} (95 %). "
@@ -72,10 +73,13 @@ def rival_sentence(d: Diagnosis) -> str | None:
     """What the next best effect would have explained."""
     if d.verdict in (NONE, PLACEMENT, UNKNOWN):
         return None
-    others = [t for t in d.tried if not t.selected and t.name not in d.candidates and t.evidence.in_range]
+    others = [t for t in d.tried if not t.selected and t.name not in d.candidates]
+    if not others:
+        return None
+    others = [t for t in others if t.evidence.in_range]
     best = max((t for t in others if _sizes(t)), key=lambda t: t.evidence.share, default=None)
     if best is None or best.evidence.share < 0.01:
-        return "No other effect of a size that can be explains more than 1 % of the misfit."
+        return "No other effect that these data show explains more than 1 % of the misfit with a possible size."
     return f"The next best, {best.name}, explains {100 * best.evidence.share:.0f} % of the misfit above the noise."
 
 
@@ -123,7 +127,8 @@ def outlier_sentence(d: Diagnosis) -> str | None:
         return None
     more = f" and {len(lines) - MOST_LINES} more" if len(lines) > MOST_LINES else ""
     first = ", ".join(map(str, lines[:MOST_LINES]))
-    return f"Set apart because they stand out from their neighbours: lines {first}{more}."
+    which = "lines" if len(lines) > 1 else "line"
+    return f"Set apart because they stand out from their neighbours: {which} {first}{more}."
 
 
 def fitted_words(t: Tried) -> str:
@@ -163,7 +168,8 @@ def _value(v: Value) -> str:
 
 def _plain(number: float, digits: int) -> str:
     """A number to so many digits, without an exponent if it is large."""
-    return f"{float(f'{number:.{digits}g}'):g}"
+    short = float(f"{number:.{digits}g}")
+    return f"{short:.0f}" if abs(short) >= LARGE else f"{short:g}"
 
 
 def _unit(unit: str) -> str:

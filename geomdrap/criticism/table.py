@@ -24,7 +24,10 @@ def errors_of(experiment: Experiment, model: Fitted) -> tuple[float, float, floa
     residual, noise = model.fit.residual[rows], experiment.noise[rows]
     block = blocks_of(experiment.at)[experiment.point_of()[rows]]
     error = float(np.sqrt(np.mean((residual / noise) ** 2)))
-    held_out = held_out_error(residual, model.fit.slopes[rows], noise, block)
+    slopes = model.fit.slopes[rows]
+    if model.looked_at_only:  # it does nothing in the model, whatever a look has shown
+        slopes = slopes[:, : -len(model.parameters_of(model.model.effects[-1]))]
+    held_out = held_out_error(residual, slopes, noise, block)
     channel = np.array(experiment.channels)[experiment.channel_of()[rows]]
     place = np.isin(channel, POSITION)
     count = len(np.unique(channel[place]))

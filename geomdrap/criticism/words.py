@@ -37,8 +37,9 @@ def hints_for(
     model: Fitted,
     left: Leftover,
     placement: Sequence[Value],
+    stretched: Sequence[Value] = (),
 ) -> tuple[str, ...]:
-    """Sentences for the user."""
+    """Sentences for the user; ``stretched`` are the strains of yarns, if the verdict names them."""
     hints = []
     if verdict == AMBIGUOUS and len(candidates) > 1:
         tried = round_with(rounds, candidates[-2:])
@@ -65,7 +66,7 @@ def hints_for(
             f"something is left that no effect of the library explains, {left.size:.1f} times the noise, {places}"
         )
         hints += trends(experiment, model)
-    hints += [*misplaced(experiment, placement), *shortened(model, verdict)]
+    hints += [*misplaced(experiment, placement), *shortened(stretched)]
     if experiment.measurement.shear is None:
         hints.append("the table has no shear angles: springback and other effects on shear alone cannot be seen")
     if not experiment.measurement.labelled:
@@ -82,16 +83,13 @@ def _of_what(left: Leftover) -> str:
         return "which is no noise, but little beside what is explained"
     return (
         f"more than noise and scatter leave as a rule (by chance {left.p_value:.1g}): more points would show whether "
-        "something else is missing, too"
+        "that has a cause"
     )
 
 
-def shortened(model: Fitted, verdict: str) -> list[str]:
+def shortened(stretched: Sequence[Value]) -> list[str]:
     """What yarns that are shorter than they were may stand for, if both families certainly are."""
-    if "yarn-extension" not in verdict.split("+"):
-        return []
-    values = [float(model.values[k]) for _, k in model.parameters_of("yarn-extension")]
-    if not all(v < -SHORTER for v in values):
+    if not stretched or not all(v.value + 1.96 * v.sigma < -SHORTER for v in stretched):
         return []
     return [
         "warp and weft are both shorter than they were, which no tension does: a ply or tool that has shrunk, or a "

@@ -15,7 +15,7 @@ from geomdrap.fishnet.sway import stepped
 
 SLIDING = 0.02  # what a piece resists changing its length by sliding, as a share of shear
 WHOLE_YARN = 1e4  # what a whole yarn resists: it keeps its length
-SOFTER = (1.0, 1e2)  # of what it resists in the nets on the way to that,
+SOFTER = (1.0, 1e2)  # the same, in the nets on the way,
 CLOSE = 1e-2  # whose forces are balanced so far
 ASTRAY = 0.4  # of the way to a net beside another one: further off it is led astray
 
@@ -55,15 +55,15 @@ class CrossingSlip(Effect):
         return self._slid(net)
 
     def on_net_near(self, net: Net, near: Net) -> Net:
-        """The same net, looked for from where the crossings of one ``near`` have slid, or of a coarser one."""
-        return self._slid(net, near)
+        """The same net, looked for from where the crossings of one ``near`` have slid."""
+        return self._slid(net, near) if type(self).on_net is CrossingSlip.on_net else self.on_net(net)
 
     def beside(self, near: Net) -> Net | None:
         """The net of the ply as it was laid for one ``near``, to first order in how values differ from those there.
 
         None where no crossing has slid there.
         """
-        if near.slid is None:
+        if near.slid is None or type(self).on_net is not CrossingSlip.on_net:
             return None
         laid, problem, found = near.slid
         other = replace(problem, target=self._target(laid, problem))

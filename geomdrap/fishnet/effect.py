@@ -93,6 +93,13 @@ class Effect:
         """The same net, which may be looked for from that of a ply much like this one: that takes less time."""
         return self.on_net(net)
 
+    def beside(self, near: Net) -> Net | None:
+        """The net of the ply as it was laid for one ``near``, to first order in how values differ from those there.
+
+        None where that takes as long as the net itself. Where the ply was laid must hardly matter to what it changes.
+        """
+        return None
+
 
 def in_order(effects: Sequence[Effect]) -> tuple[Effect, ...]:
     """The effects that change something, in the order in which they act at one stage.

@@ -26,7 +26,8 @@ FEWEST = 6
 def other_frame(net: Net, measurement: Measurement, found: Matched) -> str | None:
     """In which other frame the points seem to be, and how near they would lie; None where they do not.
 
-    A ply that is laid elsewhere still lies on the part: only points off the part count as moved.
+    A ply that is laid elsewhere still lies on the part, and a thick one as far off it everywhere: only points that
+    are off the part by more here than there count as moved.
     """
     if measurement.u is None or found.used.sum() < FEWEST:
         return None
@@ -41,9 +42,10 @@ def other_frame(net: Net, measurement: Measurement, found: Matched) -> str | Non
         what = "the points are those of a mirrored part (left for right, or an axis with the other sign)"
         return f"{what}: {said.format(left_mirrored, present)}"
     off = float(np.median(net.surface.nearest(points).distance))
-    if left < BETTER * present and off > OFF * present:
+    lifted = _typical(_lifted(points - predicted, found.normal[found.used]))
+    if left < BETTER * min(present, lifted) and off > OFF * present:
         turned = f" and turned by {turn:.3g} degrees" if turn > LEAST_TURN else ""
-        x, y, z = move
+        x, y, z = np.round(move, 2) + 0.0
         what = f"the points are in another frame, moved by ({x:.4g}, {y:.4g}, {z:.4g}) mm{turned}"
         return f"{what}: {said.format(left, present)}"
     return None
@@ -51,6 +53,11 @@ def other_frame(net: Net, measurement: Measurement, found: Matched) -> str | Non
 
 def _typical(away: np.ndarray) -> float:
     return float(np.median(np.linalg.norm(away, axis=1)))
+
+
+def _lifted(away: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """What a ply of some thickness leaves of residuals (n, 3): all of it is as far off the part."""
+    return away - float(np.median(np.einsum("ij,ij->i", away, normal))) * normal
 
 
 def _carried(points: np.ndarray, to: np.ndarray, sign: float) -> tuple[np.ndarray, np.ndarray, float]:

@@ -72,6 +72,16 @@ def test_diagnose_tries_effects_of_the_users_own(ply: Path, tmp_path: Path) -> N
     assert {"diagnose.json", "diagnose.png"} <= {path.name for path in (tmp_path / "d").iterdir()}
 
 
+def test_files_of_an_earlier_diagnosis_are_warned_of(
+    ply: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(gd, "diagnose", partial(gd.diagnose, effects=("weave-skew",)))
+    (tmp_path / "diagnose.png").write_bytes(b"old")
+    asked = ["diagnose", str(ply / "part.stl"), str(ply / "measured.csv"), "--setup", str(ply / "setup.toml")]
+    result = CliRunner().invoke(cli, [*asked, "-o", str(tmp_path), "--outputs", "json"])
+    assert f"diagnose.png in {tmp_path} is of an earlier run: remove it" in result.stderr
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["diagnose", "improve"])
 def test_swapped_labels_are_warned_of_even_quietly(

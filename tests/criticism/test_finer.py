@@ -14,7 +14,7 @@ import geomdrap as gd
 from geomdrap.criticism.evidence import Evidence
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fit import Fit
-from geomdrap.criticism.fitted_on import doubted_for_facets, doubted_for_pitch, refined
+from geomdrap.criticism.fitted_on import doubted_for_facets, doubted_for_pitch, refined, settled
 from geomdrap.criticism.layup import Layup
 from geomdrap.criticism.likelihood import NO_SCATTER, Scatter
 from geomdrap.criticism.model import Fitted, Model
@@ -316,9 +316,10 @@ def test_scatter_on_finer_nets_is_found_anew_if_coarser_ones_had_any(monkeypatch
     anew = Scatter(0.2, 30.0)
     judge = SimpleNamespace(best_scatter=lambda models, of: ([anew], np.zeros(1)))
     monkeypatch.setattr(ended, "judge_of", lambda experiment, rows: judge)
-    model = fitted("crossing-slip")
-    assert ended.likeliest(experiment((2.0, 4.0)), model, Scatter(0.5, 20.0)) is anew
-    assert ended.likeliest(experiment((2.0, 4.0)), model, NO_SCATTER) is NO_SCATTER
+    model, meant, before = fitted("crossing-slip"), experiment((2.0, 8.0)), Scatter(0.5, 20.0)
+    assert ended._anew(meant, meant.finer(), model, before) is anew
+    assert ended._anew(meant, meant.finer(), model, NO_SCATTER) is NO_SCATTER
+    assert ended._anew(meant, meant, model, before) is before
 
 
 def test_slopes_of_crossings_that_slide_are_of_the_ply_that_is_laid_and_of_what_slides():
@@ -339,6 +340,8 @@ def test_slopes_of_crossings_that_slide_are_of_the_ply_that_is_laid_and_of_what_
         quick, full = meant.beside(here, there), meant.predict(there) - meant.predict(here)
         assert np.sqrt(np.nanmean((quick - full) ** 2)) < 0.15 * np.sqrt(np.nanmean(full**2))
     assert meant.beside(here, effects(0.05, 0.31)) is None  # one at a time
+    skewed = [gd.effects.make("weave-skew", skew=0.2)]
+    assert meant.beside(here, [*here, *skewed]) is None  # what changes the shear changes how crossings slide
     assert meant.beside(effects(0.0, 0.0), effects(0.05, 0.0)) is None  # nothing slides
     locks = gd.effects.make("locking", angle=90.0)
     assert meant.beside([*here, locks], [*effects(0.0, 0.31), locks]) is not None  # what is neutral does not count
@@ -352,3 +355,21 @@ def test_what_is_large_and_soon_made_again_is_not_kept_with_a_diagnosis():
     assert not left.surfaces
     assert not left.judges
     assert left.costly is full.costly
+
+
+def test_a_model_is_settled_with_slopes_of_where_it_ends():
+    """It begins several steps away, where the slopes are others."""
+
+    def bent(p):
+        return np.array([p[0] + 0.2 * p[0] ** 2, p[1], p[2], p[0] + p[1]])
+
+    def predict(effects):
+        return bent(np.array([effects[0].values[name] for name in ("du", "dv", "dangle")]))
+
+    place = np.array([3.0, -1.0, 0.5])
+    meant = SimpleNamespace(measured=bent(place), predict=predict, refused={}, beside=lambda *_: None)
+    model = Model(())
+    start = Fitted(model, Fit(model.neutral, np.zeros(4), np.zeros((4, 3)), 0.0))
+    found = settled(meant, lambda a: a / 0.01, start)
+    np.testing.assert_allclose(found.values, place, atol=1e-3)
+    np.testing.assert_allclose(found.fit.slopes[:, 0], [1.0 + 0.4 * place[0], 0.0, 0.0, 1.0], atol=2e-2)

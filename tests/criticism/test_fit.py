@@ -131,23 +131,39 @@ def test_a_fit_ends_where_a_step_gains_less_than_is_asked():
     assert chi2[0] < 1e-3 < chi2[1]
 
 
-def test_what_a_model_leaves_counts_as_noise_where_it_is_more():
-    """Values in units ten times smaller, beside what no such curve fits: there is no more to be told of them."""
-    y = curve(np.array([3.0, 1.5])) + 0.3 * np.random.default_rng(1).normal(size=40)
+def test_what_a_model_leaves_counts_as_noise_where_it_is_more(monkeypatch):
+    """A fit of many values ends where it would if their noise were as large as what no such curve fits."""
+    x = np.linspace(0.0, 4.0, 2000)
+
+    def wave(p):
+        return p[0] * np.exp(-p[1] * x)
+
+    y = wave(np.array([3.0, 1.5])) + 0.3 * np.random.default_rng(1).normal(size=2000)
 
     def count(noise):
         calls = []
 
         def predict(p):
             calls.append(p)
-            return curve(p)
+            return wave(p)
 
         got = fit(predict, y, lambda a: a / noise, np.array([1.0, 0.5]), STEPS, *WIDE)
         return len(calls), got.values
 
-    (few, values), (many, same_values) = count(0.3), count(0.03)
-    assert few == many
-    np.testing.assert_allclose(values, same_values, rtol=1e-6)
+    (few, values), (same_count, same_values) = count(0.3), count(0.003)
+    assert few == same_count
+    np.testing.assert_allclose(values, same_values, rtol=1e-9)
+    monkeypatch.setattr("geomdrap.criticism.fit.MANY", 1e12)
+    assert count(0.003)[0] > few
+
+
+def test_a_step_that_breaks_its_promise_does_not_end_a_fit():
+    """Slopes that are given are ten times too steep: the first step gains little, and they are taken anew."""
+    a = np.random.default_rng(3).normal(size=(40, 2))
+    y = a @ [2.0, -1.0]
+    y *= np.sqrt(1000.0 / (y @ y))
+    got = fit(lambda p: a @ p, y, same, np.zeros(2), 10.0 * STEPS, *WIDE, slopes=10.0 * a, small=400.0)
+    assert got.chi2 < 1.0
 
 
 def test_fresh_slopes_are_not_taken_again_where_a_step_fails():

@@ -301,11 +301,10 @@ def test_a_ply_at_the_end_of_where_it_is_looked_for_is_not_found(dangle, lost):
 
 
 def test_yarns_that_are_all_shorter_are_said_to_be_no_matter_of_tension():
-    model = Model(("yarn-extension",))
+    def found(warp, weft, sigma=0.0003):
+        return [Value("strain_warp", warp, sigma, ""), Value("strain_weft", weft, sigma, "")]
 
-    def found(warp, weft):
-        return Fitted(model, Fit(np.array([0.0, 0.0, 0.0, warp, weft]), np.zeros(3), np.zeros((3, 5)), 0.0))
-
-    assert "shrunk" in shortened(found(-0.009, -0.0094), "yarn-extension")[0]
-    assert not shortened(found(-0.009, 0.002), "yarn-extension")
-    assert not shortened(found(-0.009, -0.0094), "unknown")
+    assert "shrunk" in shortened(found(-0.009, -0.0094))[0]
+    assert not shortened(found(-0.009, 0.002))
+    assert not shortened(found(-0.009, -0.0094, 0.005))  # not for certain
+    assert not shortened(())

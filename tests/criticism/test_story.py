@@ -9,6 +9,7 @@ import pytest
 
 from geomdrap.criticism.diagnosis import Tried, Value
 from geomdrap.criticism.evidence import Evidence
+from geomdrap.criticism.leftover import Leftover
 from geomdrap.criticism.likelihood import Scatter
 from geomdrap.criticism.story import (
     fitted_words,
@@ -42,6 +43,7 @@ def diagnosis(verdict, *rows):
         placement=(),
         confidence=1.0,
         warnings=(),
+        leftover=Leftover(1.0, 0.0, ()),
     )
 
 
@@ -101,7 +103,8 @@ def test_a_size_that_cannot_be_is_no_rival_nor_is_what_these_data_do_not_show():
         tried("thickness", 0.2, share=0.3, in_range=True),
     ]
     assert rival_sentence(diagnosis("weave-skew", *rows)).startswith("The next best, thickness, explains 30 %")
-    assert rival_sentence(diagnosis("weave-skew", *rows[:3])).startswith("No other effect of a size that can be")
+    assert rival_sentence(diagnosis("weave-skew", *rows[:3])).startswith("No other effect that these data show")
+    assert rival_sentence(diagnosis("weave-skew", rows[0])) is None
 
 
 def test_large_numbers_are_written_without_an_exponent():
@@ -112,11 +115,22 @@ def test_large_numbers_are_written_without_an_exponent():
     assert "397000" in cells
     assert "± 70 mm" in cells
     assert "radius 170 mm" in cells
+    huge = Tried(**{**vars(d.tried[0]), "cv_error": 3972560.5})
+    assert "3970000" in table_rows(diagnosis("none", huge))[1]
 
 
 def test_lines_set_apart_are_named_once_and_the_rest_counted():
     d = diagnosis("none")
     d.outliers = [SimpleNamespace(line=line) for line in (5, 3, 3, *range(10, 24))]
     assert outlier_sentence(d).endswith("lines 3, 5, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19 and 4 more.")
+    d.outliers = [SimpleNamespace(line=7)]
+    assert outlier_sentence(d).endswith(": line 7.")
     d.outliers = []
     assert outlier_sentence(d) is None
+
+
+def test_the_model_agrees_nearly_where_a_little_is_left():
+    d = diagnosis("none", tried("steering", 0.05, 0.06))
+    assert "agrees with the measurement down to its noise" in verdict_sentence(d)
+    d.leftover = Leftover(0.01, 0.8, ("along",))
+    assert "agrees with the measurement nearly down to its noise" in verdict_sentence(d)

@@ -1,10 +1,13 @@
 """Effects that act on the finished net."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from shared import drape
 
 import geomdrap as gd
+from geomdrap.effects.crossing_slip import CrossingSlip
 from geomdrap.surface import shapes
 
 CAP = shapes.sphere_cap(80.0, 60.0, 3.0)
@@ -55,6 +58,20 @@ def test_crossings_beside_those_that_have_slid_to_first_order(share, onset):
     quick = gd.effects.make("crossing-slip", share=share, onset=onset).beside(near).points - near.points
     assert np.isfinite(quick).sum() == np.isfinite(full).sum()
     assert np.sqrt(np.nanmean((quick - full) ** 2)) < 0.1 * np.sqrt(np.nanmean(full**2))
+
+
+def test_what_derives_from_crossing_slip_keeps_its_own_net():
+    class More(CrossingSlip):
+        name = "more-slip"
+
+        def on_net(self, net):
+            slid = super().on_net(net)
+            return replace(slid, shear=slid.shear + 5.0)
+
+    near = slid_on(CAP, 0.3, 15.0)
+    more = More(share=0.3, onset=15.0)
+    np.testing.assert_allclose(more.on_net_near(near.slid.laid, near).shear, near.shear + 5.0, atol=0.05)
+    assert more.beside(near) is None
 
 
 def test_beside_crossings_that_have_not_slid_there_is_nothing_to_first_order():

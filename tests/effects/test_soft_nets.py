@@ -1,6 +1,5 @@
 """Nets that turn as a whole about their seed, and nets that refine a coarser one."""
 
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation

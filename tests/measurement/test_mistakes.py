@@ -245,9 +245,16 @@ def test_points_in_another_frame_are_noticed(lopsided, change, words):
 
 
 @pytest.mark.parametrize("change", [lambda p: p, lambda p: p + [0.0, 0.0, 2.0], lambda p: p + [2.0, -3.0, 0.0]])
-def test_a_thick_ply_or_one_laid_elsewhere_is_in_no_other_frame(lopsided, change):
+def test_a_ply_that_lies_nearly_where_it_should_is_in_no_other_frame(lopsided, change):
     net, m = lopsided
     other = replace(m, points=change(m.points))
+    assert not looks_wrong(net, other, match(net, other))
+
+
+@pytest.mark.parametrize("offset", [3.0, 7.0, 15.0])
+def test_a_thick_ply_is_in_no_other_frame(lopsided, offset):
+    net, m = lopsided
+    other = replace(m, points=m.points + offset * match(net, m).normal)
     assert not looks_wrong(net, other, match(net, other))
 
 
