@@ -40,8 +40,8 @@ class Experiment:
 
     ``at`` (n, 2) mm fabric coordinates of the points; ``channels`` (c,) of those in ``prediction``; ``mask`` (n, c)
     which were measured; ``noise`` (m,) their standard deviations, mm or degrees; ``measured`` (m,); vectors hold the
-    true entries of ``mask``, channel by channel. ``refused``: why a drape with an effect could not be made at some of the
-    values tried, by its name; ``warnings`` of the table. ``frames`` (n, 3, 3): along the warp, across it, and the
+    true entries of ``mask``, channel by channel. ``refused``: why a drape with an effect could not be made at some of
+    the values tried, by its name; ``warnings`` of the table. ``frames`` (n, 3, 3): along the warp, across it, and the
     normal. What is costly is kept: ``surfaces`` with effects on them and how their facets were split (``splits``),
     the ``coarseness`` of nets, the last ``costly`` nets, and ``judges`` of some values. ``coarser``: the pitch, mm,
     of the nets which those for what is costly refine, None where they are the first.
