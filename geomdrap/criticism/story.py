@@ -138,6 +138,11 @@ def fitted_words(t: Tried) -> str:
     return "not seen" if not any(math.isfinite(v.sigma) for v in t.values) else _list(t.values)
 
 
+def held_out(t: Tried) -> str:
+    """The held-out error of an effect, over the noise."""
+    return f"{t.cv_error:.2f}" if t.cv_error < LARGE else _plain(t.cv_error, 3)
+
+
 def table_rows(d: Diagnosis) -> list[tuple[str, ...]]:
     """Header and a row per effect: name, values, share of the misfit, held-out error, chance, looks like."""
     rows = [("effect", "fitted (± 95 %)", "explains", "held out", "by chance", "looks like")]
@@ -149,7 +154,7 @@ def _row(t: Tried) -> tuple[str, ...]:
         ("* " if t.selected else "  ") + t.name,
         fitted_words(t),
         f"{100 * max(t.evidence.share, 0.0):.0f} %",
-        f"{t.cv_error:.2f}" if t.cv_error < LARGE else _plain(t.cv_error, 3),
+        held_out(t),
         f"{t.evidence.p_family:.1g}",
         ", ".join(t.confounded_with) or "-",
     )

@@ -6,8 +6,8 @@ import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from geomdrap.criticism import story
 from geomdrap.criticism.before_after import before_and_after, difference, likeness, placed
-from geomdrap.criticism.story import error_sentence, fitted_words, rival_sentence, unseen_sentences, verdict_sentence
 from geomdrap.export import palette
 from geomdrap.export.compare_flat import draw_flat
 from geomdrap.export.compare_legend import draw_dot_bar, draw_size_bar
@@ -68,13 +68,14 @@ def figure_of(diagnosis: Diagnosis) -> Any:
 def _words(diagnosis: Diagnosis) -> tuple[list[str], list[str]]:
     """The verdict, and what is said of it, in lines."""
     more = [
-        error_sentence(diagnosis),
-        rival_sentence(diagnosis) or "",
+        story.error_sentence(diagnosis),
+        story.placement_sentence(diagnosis),
+        story.rival_sentence(diagnosis),
         *diagnosis.hints,
-        *unseen_sentences(diagnosis),
+        *story.unseen_sentences(diagnosis),
     ]
     lines = [text for s in more if s for text in textwrap.wrap(s[0].upper() + s[1:], 190)]
-    return textwrap.wrap(verdict_sentence(diagnosis), 92), lines
+    return textwrap.wrap(story.verdict_sentence(diagnosis), 92), lines
 
 
 def _heading(figure: Any, headlines: list[str], lines: list[str]) -> None:
@@ -104,5 +105,5 @@ def _effects(figure: Any, diagnosis: Diagnosis, height: float) -> None:
         side.set_visible(name in ("left", "bottom"))
     axes.text(101.5, len(tried), "held out, and fitted (± 95 %)", fontsize=8.5, va="center", color=palette.INK)
     for k, t in enumerate(tried):
-        note = f"held out {t.cv_error:.2f}   {fitted_words(t)}"
+        note = f"held out {story.held_out(t)}   {story.fitted_words(t)}"
         axes.text(101.5, k, note, fontsize=8.5, va="center", color=palette.INK if t.selected else palette.FAINT)
