@@ -110,6 +110,7 @@ def compare_net(
     )
     noises, said = _noises(measurement, matched, away, shear, (warp, weft), (sigma_xyz, sigma_shear, sigma_direction))
     outliers = find_outliers(net, measurement, matched, noises[0].sigma, noises[1].sigma)
+    wrong = looks_wrong(net, measurement, matched)
     return Comparison(
         net=net,
         measurement=measurement,
@@ -131,8 +132,8 @@ def compare_net(
             *net.warnings,
             *measurement.warnings,
             *said,
-            *looks_wrong(net, measurement, matched),
-            *_words(measurement, outliers, matched.used),
+            *wrong,
+            *_words(measurement, outliers, matched.used, bool(wrong)),
         ),
     )
 
@@ -191,13 +192,20 @@ def _trusted(matched: Matched, outliers: tuple[Outlier, ...]) -> np.ndarray:
     return trusted
 
 
-def _words(measurement: Measurement, outliers: tuple[Outlier, ...], used: np.ndarray) -> tuple[str, ...]:
-    """Sentences on the outliers: how many, and which labels seem wrong; ``used`` (n,) bool have a prediction."""
+def _words(
+    measurement: Measurement, outliers: tuple[Outlier, ...], used: np.ndarray, all_wrong: bool
+) -> tuple[str, ...]:
+    """Sentences on the outliers: how many, and which labels seem wrong, unless the table is ``all_wrong``.
+
+    ``used`` (n,) bool have a prediction.
+    """
     out = []
     if outliers:
         lines = ", ".join(str(line) for line in sorted({outlier.line for outlier in outliers})[:8])
         more = ", …" if len({outlier.line for outlier in outliers}) > 8 else ""
         out.append(f"{len(outliers)} values stand out from their neighbours (lines {lines}{more}) and are set apart")
+    if all_wrong:
+        return tuple(out)
     told, left = _words_on_lines(measurement, [one for one in outliers if one.shift is not None], used)
     for outlier in left[:8]:
         a, b = outlier.shift or (0, 0)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from geomdrap.measurement.outliers import Outlier
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Comparison:
     """Measured less predicted, a row for each row of the measurement; NaN where there is no prediction.
 
@@ -50,6 +50,9 @@ class Comparison:
     places: Places
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"Comparison({self.measurement.source!r}, {self.used.sum()} of {len(self.used)} points)"
 
     @property
     def used(self) -> np.ndarray:

@@ -69,7 +69,7 @@ class Step:
     rms_shear: float | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Diagnosis:
     """Which effect is missing in the model.
 
@@ -95,6 +95,9 @@ class Diagnosis:
     outliers: tuple[Outlier, ...]
     hints: tuple[str, ...]
     notes: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return f"Diagnosis({self.verdict!r}, candidates={self.candidates!r}, confidence={self.confidence:.3g})"
 
     @property
     def warnings(self) -> tuple[str, ...]:

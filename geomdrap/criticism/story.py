@@ -80,7 +80,9 @@ def rival_sentence(d: Diagnosis) -> str | None:
     best = max((t for t in others if _sizes(t)), key=lambda t: t.evidence.share, default=None)
     if best is None or best.evidence.share < 0.01:
         return "No other effect that these data show explains more than 1 % of the misfit with a possible size."
-    return f"The next best, {best.name}, explains {100 * best.evidence.share:.0f} % of the misfit above the noise."
+    found = [t.name for t in d.tried if t.selected]
+    of = f"what {found[0]} leaves" if len(found) > 1 else "the misfit"
+    return f"The next best, {best.name}, explains {100 * best.evidence.share:.0f} % of {of} above the noise."
 
 
 def unseen_sentences(d: Diagnosis) -> list[str]:

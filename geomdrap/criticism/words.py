@@ -104,7 +104,10 @@ def misplaced(experiment: Experiment, placement: Sequence[Value]) -> list[str]:
     far = [v for v, most in limits if abs(v.value) > most + (1.96 * v.sigma if np.isfinite(v.sigma) else 0.0)]
     if not far:
         return []
-    where = " and ".join(f"{v.name} = {v.value:.3g} {v.unit}" for v in far)
+    where = " and ".join(
+        f"{v.name} = {v.value:.3g} {v.unit}" if np.isfinite(v.sigma) else f"{v.name} further than can be told"
+        for v in far
+    )
     marks = (mark_spacing(experiment.measurement.u), mark_spacing(experiment.measurement.v), None)
     pairs = zip(placement, marks, strict=True)
     spacing = [m for v, m in pairs if v in far and m and abs(abs(v.value) / m - 1.0) < ABOUT_A_MARK]

@@ -99,7 +99,7 @@ def _effects(figure: Any, diagnosis: Diagnosis, height: float) -> None:
     axes.barh(range(len(tried)), shares, color=colours, height=0.62)
     axes.set_yticks(range(len(tried)), [t.name for t in tried], fontsize=9, color=palette.INK)
     axes.set_xlim(0.0, 100.0)
-    axes.set_xlabel("share of the misfit above noise and scatter that it explains alone, %", fontsize=8.5)
+    axes.set_xlabel("share of what the model before it leaves above noise and scatter, %", fontsize=8.5)
     axes.tick_params(labelsize=8.5, colors=palette.INK, length=3)
     for name, side in axes.spines.items():
         side.set_visible(name in ("left", "bottom"))

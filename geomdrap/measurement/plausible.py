@@ -35,9 +35,9 @@ OTHER_LABELS = (
     ("u and v are swapped", (0, 1, 1, 0)),
     ("u runs the other way (mirrored)", (-1, 0, 0, 1)),
     ("v runs the other way (mirrored)", (1, 0, 0, -1)),
-    ("u and v both run the other way (turned by 180 degrees)", (-1, 0, 0, -1)),
-    ("u and v are swapped and v runs the other way (turned by 90 degrees)", (0, 1, -1, 0)),
-    ("u and v are swapped and u runs the other way (turned by 90 degrees)", (0, -1, 1, 0)),
+    ("u and v both run the other way (turned by 180 degrees, or the heading is)", (-1, 0, 0, -1)),
+    ("u and v are swapped and v runs the other way (turned by 90 degrees, or the heading is)", (0, 1, -1, 0)),
+    ("u and v are swapped and u runs the other way (turned by 90 degrees, or the heading is)", (0, -1, 1, 0)),
     ("u and v are swapped and both run the other way", (0, -1, -1, 0)),
 )
 """What else the labels may be: words, and the matrix that turns the labels read into the right ones."""
@@ -148,29 +148,32 @@ def check_labels(net: Net, measurement: Measurement) -> tuple[str, ...]:
 
 
 def check_shear(measured: np.ndarray | None, predicted: np.ndarray, source: str) -> tuple[str, ...]:
-    """A warning where shear angles (n,), degrees, look as if they had the other sign, or were in radians."""
+    """A warning where shear angles (n,), degrees, look as if they were others than they should be."""
     if measured is None:
         return ()
     known = np.isfinite(measured) & np.isfinite(predicted)
     a, b = measured[known], predicted[known]
     if known.sum() < FEWEST or min(a.std(), b.std()) <= 0.0:
         return ()
+    words = _other_shear(a, b)
+    return (f"{source}: {LOOKS_WRONG} the shear {words}",) if words else ()
+
+
+def _other_shear(a: np.ndarray, b: np.ndarray) -> str | None:
+    """What angles a (n,), degrees, are in place of those predicted, b: from yarn to yarn, of another sign or unit."""
     alike, ratio = float(np.corrcoef(a, b)[0, 1]), float(a.std() / b.std())
+    signed = "positive is where the angle between warp and weft becomes less than 90 degrees"
+    if a.min() > 0.0 and np.median(np.abs(90.0 - a - np.abs(b))) < BETTER * np.median(np.abs(a - b)):
+        return f"is the angle between warp and weft: give 90 less it, with its sign ({signed})"
     if alike < ANTI and alike * np.sqrt(len(a)) < -CERTAIN:
-        return (
-            f"{source}: {LOOKS_WRONG} the shear has the other sign: it goes against what is predicted (correlation "
-            f"{alike:.2f}); positive is where the angle between warp and weft becomes less than 90 degrees",
-        )
+        return f"has the other sign: it goes against what is predicted (correlation {alike:.2f}); {signed}"
     if _has_no_sign(a, b):
         never = "negative" if a.max() > 0.0 else "positive"
-        return (
-            f"{source}: {LOOKS_WRONG} the shear has no sign: it is never {never}, and goes with the size of what is "
-            "predicted, not with its sign; positive is where the angle between warp and weft becomes less than 90 "
-            "degrees",
-        )
+        goes = "goes with the size of what is predicted, not with its sign"
+        return f"has no sign: it is never {never}, and {goes}; {signed}"
     if alike > ALIKE and 0.3 < ratio * 180.0 / np.pi < 3.0:
-        return (f"{source}: {LOOKS_WRONG} the shear is in radians: it is {ratio:.3f} times what is predicted",)
-    return ()
+        return f"is in radians: it is {ratio:.3f} times what is predicted"
+    return None
 
 
 def _has_no_sign(measured: np.ndarray, predicted: np.ndarray) -> bool:

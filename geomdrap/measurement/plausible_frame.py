@@ -11,10 +11,10 @@ if TYPE_CHECKING:
     from geomdrap.measurement.match import Matched
     from geomdrap.measurement.measurement import Measurement
 
-ASTRAY = 0.02
+ASTRAY = 0.01
 """Of the part's diagonal: points that far from where they are predicted are no matter of lay-up."""
-OFF = 0.15
-"""Of that distance: half of the points lie as far off the part where their frame is another one, at least."""
+OFF = 0.12
+"""Of that distance: the points lie as unevenly off the part where their frame is another one, at least."""
 BETTER = 0.25
 """Another frame explains a measurement where it brings half of the points to this share of the distance."""
 LEAST_TURN = 0.5
@@ -41,7 +41,7 @@ def other_frame(net: Net, measurement: Measurement, found: Matched) -> str | Non
     if left_mirrored < BETTER * min(present, left):
         what = "the points are those of a mirrored part (left for right, or an axis with the other sign)"
         return f"{what}: {said.format(left_mirrored, present)}"
-    off = float(np.median(net.surface.nearest(points).distance))
+    off = _unevenly_off(net, points)
     lifted = _typical(_lifted(points - predicted, found.normal[found.used]))
     if left < BETTER * min(present, lifted) and off > OFF * present:
         turned = f" and turned by {turn:.3g} degrees" if turn > LEAST_TURN else ""
@@ -53,6 +53,13 @@ def other_frame(net: Net, measurement: Measurement, found: Matched) -> str | Non
 
 def _typical(away: np.ndarray) -> float:
     return float(np.median(np.linalg.norm(away, axis=1)))
+
+
+def _unevenly_off(net: Net, points: np.ndarray) -> float:
+    """How unevenly far off the part points (n, 3) lie, mm: half of them differ by less from the middle one."""
+    near = net.surface.nearest(points)
+    height = np.einsum("ij,ij->i", points - near.point, net.surface.normals[near.face])
+    return float(np.median(np.abs(height - np.median(height))))
 
 
 def _lifted(away: np.ndarray, normal: np.ndarray) -> np.ndarray:

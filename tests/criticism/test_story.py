@@ -105,6 +105,8 @@ def test_a_size_that_cannot_be_is_no_rival_nor_is_what_these_data_do_not_show():
     assert rival_sentence(diagnosis("weave-skew", *rows)).startswith("The next best, thickness, explains 30 %")
     assert rival_sentence(diagnosis("weave-skew", *rows[:3])).startswith("No other effect that these data show")
     assert rival_sentence(diagnosis("weave-skew", rows[0])) is None
+    both = [*rows, tried("yarn-extension", 0.1, 0.1, selected=True)]
+    assert "30 % of what weave-skew leaves" in rival_sentence(diagnosis("weave-skew+yarn-extension", *both))
 
 
 def test_large_numbers_are_written_without_an_exponent():
