@@ -15,7 +15,7 @@ import numpy as np
 
 from geomdrap.criticism.cleaned import cleaned, outliers_of
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
-from geomdrap.criticism.ended import WORTH, End, at_an_end, chosen, ended, leaves, left_over
+from geomdrap.criticism.ended import WORTH, End, at_an_end, chosen, ended, explains_the_rest, leaves, left_over
 from geomdrap.criticism.evidence import Evidence, says_the_same
 from geomdrap.criticism.experiment import Experiment, flatten
 from geomdrap.criticism.final import said_of_coarser
@@ -102,17 +102,22 @@ def search(
     whiten = experiment.white
     base = refit(experiment, whiten, known[0]) if known else fit_placement(experiment, whiten)
     rounds: list[Round] = []
+    certain = True  # that something is left to find
     while True:
         left = [name for name in names if name not in base.model.effects]
         told = _teller(progress, passed + len(rounds), steps_of(left))
         old = [m for m in known if m.model.effects[:-1] == base.model.effects and m.model.effects]
         rounds.append(try_effects(experiment, base, whiten, left, told, old))
         best = chosen(rounds)
+        if not certain and not explains_the_rest(rounds[-1], best):
+            return rounds[:-1]
         if best is None or len(rounds) == MOST_EFFECTS or locks(experiment, rounds[0]):
             return rounds
         base, scatter = rounds[-1].trial(best)
-        if not (leaves(rounds[0], base, WORTH) and left_over(experiment, base, scatter).doubtful):
+        rest = left_over(experiment, base, scatter)
+        if not (leaves(rounds[0], base, WORTH) and rest.doubtful):
             return rounds
+        certain = rest.structured
 
 
 def _teller(progress: Progress, passed: int, count: int) -> Callable[[str], None]:

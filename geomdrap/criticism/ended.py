@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geomdrap.criticism.evidence import alike_in_what_they_leave, rivals
+from geomdrap.criticism.evidence import MOST, alike_in_what_they_leave, rivals
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.final import contenders, final, told_apart
 from geomdrap.criticism.jackknife import widened
@@ -52,6 +52,11 @@ def chosen(rounds: Sequence[Round]) -> str | None:
         if before.fit.chi2 - after.fit.chi2 < WORTH * first:
             return None
     return found[0]
+
+
+def explains_the_rest(last: Round, effect: str | None) -> bool:
+    """Whether an effect explains nearly all that a round had left: less may be what nets and facets make."""
+    return any(e.name == effect and e.share >= MOST for e in last.evidence)
 
 
 def found_by(rounds: Sequence[Round]) -> tuple[list[str], Fitted, Scatter]:

@@ -8,6 +8,7 @@ import pytest
 import geomdrap as gd
 from geomdrap.blind import make
 from geomdrap.cli.blind import _read
+from geomdrap.criticism.ended import explains_the_rest
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Judge, Residuals, Scatter
 from geomdrap.criticism.scatter import DEG, scatter_covariance
@@ -67,6 +68,13 @@ def test_what_is_left_is_doubtful_before_it_is_structure():
     for p_value, size, structured, doubtful in kinds:
         left = Leftover(p_value, size, ())
         assert (left.structured, left.doubtful) == (structured, doubtful)
+
+
+@pytest.mark.parametrize(("share", "explained"), [(0.5, False), (0.95, True)])
+def test_what_might_be_scatter_is_explained_by_what_explains_nearly_all_of_it(share, explained):
+    last = SimpleNamespace(evidence=[SimpleNamespace(name="steering", share=share)])
+    assert explains_the_rest(last, "steering") is explained
+    assert not explains_the_rest(last, None)
 
 
 @pytest.mark.slow
