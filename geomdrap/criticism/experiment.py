@@ -148,7 +148,7 @@ class Experiment:
             return None
         laid = lay.origin, lay.angle, near.pitch, Fabric(), in_order(acting), lay.reference, lay.project
         swung = swayed(near, laid_down(surface, *laid))
-        net = None if swung is None else net_with(in_order(acting), swung, near)
+        net = None if swung is None else net_with(in_order(acting), swung)
         return None if net is None or restless(net) else self._flat(net) - self._flat(near)
 
     def _on_net_beside(self, effects: Sequence[Effect], others: Sequence[Effect]) -> np.ndarray | None:

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from geomdrap.fishnet import Effect, Net, Parameter
-from geomdrap.fishnet.relax import GOOD_ENOUGH, relax
+from geomdrap.fishnet.relax import relax
 from geomdrap.fishnet.relax_energy import Law
-from geomdrap.fishnet.relax_net import Balance, as_net, beginning
+from geomdrap.fishnet.relax_net import Balance, as_net
 from geomdrap.fishnet.relax_problem import Problem, chord_sines, pose
 from geomdrap.fishnet.sway import stepped
 
@@ -52,11 +52,15 @@ class CrossingSlip(Effect):
 
     def on_net(self, net: Net) -> Net:
         """The net with crossings that have slid; the same net where no shear is beyond the onset."""
-        return self._slid(net)
-
-    def on_net_near(self, net: Net, near: Net) -> Net:
-        """The same net, looked for from where the crossings of one ``near`` have slid."""
-        return self._slid(net, near) if type(self).on_net is CrossingSlip.on_net else self.on_net(net)
+        if not np.nanmax(np.abs(net.cell_shear), initial=0.0) > self.values["onset"]:
+            return net
+        problem = pose(net, Law(ratio=1.0, piece=SLIDING, yarn=WHOLE_YARN))
+        problem = replace(problem, target=self._target(net, problem))
+        start = problem.footing
+        for stiffness in SOFTER:
+            start = relax(replace(problem, law=problem.law._replace(yarn=stiffness)), start, CLOSE).footing
+        found = relax(problem, start)
+        return replace(as_net(net, problem, found), slid=Balance(net, problem, found))
 
     def beside(self, near: Net) -> Net | None:
         """The net of the ply as it was laid for one ``near``, to first order in how values differ from those there.
@@ -73,22 +77,6 @@ class CrossingSlip(Effect):
         # where yarns that keep their lengths are nearly free to go some way, all second derivatives lead far off
         apart, way = (np.linalg.norm((one.x - careful.x)[problem.nodes]) for one in (there, found))
         return as_net(laid, problem, there if apart < ASTRAY * way else careful)
-
-    def _slid(self, net: Net, near: Net | None = None) -> Net:
-        if not np.nanmax(np.abs(net.cell_shear), initial=0.0) > self.values["onset"]:
-            return net
-        problem = pose(net, Law(ratio=1.0, piece=SLIDING, yarn=WHOLE_YARN))
-        problem = replace(problem, target=self._target(net, problem))
-        found = None
-        if near is not None and near.slid is not None:
-            found = relax(problem, beginning(problem, net, near, near.slid.moved))
-        if found is None or found.unrest > GOOD_ENOUGH:
-            start = problem.footing
-            for stiffness in SOFTER:
-                softer = replace(problem, law=problem.law._replace(yarn=stiffness))
-                start = relax(softer, start, CLOSE).footing
-            found = relax(problem, start)
-        return replace(as_net(net, problem, found), slid=Balance(net, problem, found))
 
     def _target(self, net: Net, problem: Problem) -> np.ndarray:
         """Sines of the shear that slip is to leave at the corners of cells."""

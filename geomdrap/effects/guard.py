@@ -16,8 +16,7 @@ from geomdrap.fishnet import Effect
 if TYPE_CHECKING:
     from geomdrap.fishnet import Net
 
-ON_NET = ("on_net", "on_net_near")
-STAGES = ("on_surface", "on_placement", "on_fabric", *ON_NET)
+STAGES = ("on_surface", "on_placement", "on_fabric", "on_net")
 """The methods at which an effect acts."""
 GUARDED = "_is_guarded"
 """Attribute of a class that is guarded: once is enough."""
@@ -69,7 +68,7 @@ def _wrong(name: str, result: Any) -> str:
     if not right:
         what = "nothing" if result is None else type(result).__name__
         return f"{what} from {name}; it must {'be' if name == 'is_neutral' else 'return the'} {_words(wanted)}"
-    return _misshapen(result) if name in ON_NET else ""
+    return _misshapen(result) if name == "on_net" else ""
 
 
 def _given_by(name: str) -> tuple[type, ...]:
@@ -78,7 +77,7 @@ def _given_by(name: str) -> tuple[type, ...]:
     from geomdrap.fishnet.shift import Shift
     from geomdrap.surface import Surface
 
-    gives = {"on_surface": Surface, "on_placement": Shift, "on_fabric": Fabric, **dict.fromkeys(ON_NET, Net)}
+    gives = {"on_surface": Surface, "on_placement": Shift, "on_fabric": Fabric, "on_net": Net}
     return (bool, np.bool_) if name == "is_neutral" else (gives.get(name, type(None)),)
 
 

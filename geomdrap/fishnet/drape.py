@@ -61,7 +61,6 @@ def drape(
     the generators along them: the origin is then the point of the guide nearest to ``origin``, or where the two
     cross, and the warp runs along its guide whatever the ``angle``. ``near`` is a net of a ply much like this one:
     one of least energy is sought from where its nodes have gone, which takes less time; a coarser one is refined.
-    Crossings that slide begin likewise.
     Raises SurfaceError where the part cannot be draped, DrapeError for an impossible seed, heading, pitch or
     blank.
 
@@ -83,7 +82,7 @@ def drape(
     net = _as_net(start, reach, extent, grid)
     if fabric.relaxes:
         net = relaxed(net, near)
-    return replace(net_with(acting, net, near), effects=acting, guided=start.guides is not None)
+    return replace(net_with(acting, net), effects=acting, guided=start.guides is not None)
 
 
 def _march_sliding(

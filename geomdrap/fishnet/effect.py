@@ -89,10 +89,6 @@ class Effect:
         """The net as it really ends up."""
         return net
 
-    def on_net_near(self, net: Net, near: Net) -> Net:
-        """The same net, which may be looked for from that of a ply much like this one: that takes less time."""
-        return self.on_net(net)
-
     def beside(self, near: Net) -> Net | None:
         """The net of the ply as it was laid for one ``near``, to first order in how values differ from those there.
 
@@ -135,8 +131,8 @@ def fabric_with(effects: Sequence[Effect], fabric: Fabric) -> Fabric:
     return fabric
 
 
-def net_with(effects: Sequence[Effect], net: Net, near: Net | None = None) -> Net:
-    """The net with the effects that act after the drape, which may be looked for from that of a ply much like it."""
+def net_with(effects: Sequence[Effect], net: Net) -> Net:
+    """The net with the effects that act after the drape."""
     for effect in effects:
-        net = effect.on_net(net) if near is None else effect.on_net_near(net, near)
+        net = effect.on_net(net)
     return net

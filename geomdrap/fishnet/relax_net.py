@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from geomdrap.fishnet.net import Net
     from geomdrap.fishnet.relax import Relaxed
     from geomdrap.fishnet.relax_problem import Problem
-    from geomdrap.fishnet.relax_surface import Footing
 
 
 class Balance(NamedTuple):
@@ -29,11 +28,6 @@ class Balance(NamedTuple):
     laid: Net
     problem: Problem
     found: Relaxed
-
-    @property
-    def moved(self) -> np.ndarray:
-        """How far nodes (nu, nv, 3) have gone to where they came to rest, mm; NaN for those that cannot move."""
-        return self.problem.on_net(self.found.footing.point - self.problem.footing.point, math.nan)
 
 
 def relaxed(net: Net, near: Net | None = None) -> Net:
@@ -45,24 +39,22 @@ def relaxed(net: Net, near: Net | None = None) -> Net:
     if near is None or near.moved is None:
         found = relax(problem, problem.footing)
     else:
-        found = relax(problem, beginning(problem, net, near, near.moved))
+        start = gone_along(problem.on_net(problem.footing.point, math.nan), net, near)
+        found = relax(problem, placed(problem, start))
+    moved = found.footing.point - problem.footing.point
     balance = Balance(net, problem, found)
-    return replace(as_net(net, problem, found), moved=balance.moved, balance=balance)
+    return replace(as_net(net, problem, found), moved=problem.on_net(moved, math.nan), balance=balance)
 
 
-def beginning(problem: Problem, net: Net, near: Net, moved: np.ndarray) -> Footing:
-    """Where nodes of a net stand that have ``moved`` as far as those of a net ``near`` have."""
-    return placed(problem, gone_along(problem.on_net(problem.footing.point, math.nan), net, near, moved))
-
-
-def gone_along(start: np.ndarray, net: Net, near: Net, moved: np.ndarray) -> np.ndarray:
+def gone_along(start: np.ndarray, net: Net, near: Net) -> np.ndarray:
     """Nodes ``start`` (nu, nv, 3) mm of a net, moved as far as those of a net ``near`` have, between its by cubics.
 
     Nodes that the other net has not go with it as a whole, and from there as those nearest to them do.
     """
     from scipy.ndimage import distance_transform_edt
 
-    across = _between(moved.swapaxes(0, 1), net.v, near.v).swapaxes(0, 1)
+    assert near.moved is not None
+    across = _between(near.moved.swapaxes(0, 1), net.v, near.v).swapaxes(0, 1)
     away = _between(across, net.u, near.u) @ (frame(near.warp0, near.normal0).T @ frame(net.warp0, net.normal0))
     known = np.isfinite(away - start).all(axis=2)
     if not known.any():

@@ -55,14 +55,6 @@ def test_a_mistake_in_is_neutral_is_the_plugins(load, decorator, body, words):
     assert str(error.value).startswith(f"plugin my.py: effect own {words}")
 
 
-def test_a_net_near_another_one_is_the_plugins_too(load, net):
-    own = load("def on_net_near(self, net, near):\n    return near.nothing")
-    with pytest.raises(gd.PluginError, match="failed in on_net_near, line"):
-        own(strain=0.01).on_net_near(net, net)
-    with pytest.raises(gd.PluginError, match="nothing from on_net_near; it must return the Net"):
-        load("def on_net_near(self, net, near):\n    pass")(strain=0.01).on_net_near(net, net)
-
-
 def test_is_neutral_of_its_own_goes_on_working(load):
     own = load("@property\ndef is_neutral(self):\n    return self.values['strain'] < 0.01 or super().is_neutral")
     assert (own(strain=0.005).is_neutral, own(strain=0.02).is_neutral) == (True, False)

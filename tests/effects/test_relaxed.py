@@ -303,7 +303,7 @@ def test_yarns_that_the_other_net_has_not_go_the_way_of_their_neighbours():
     small = gd.drape(plane, (0.0, 0.0, 0.0), 0.0, 10.0, reach=(20.0, 20.0))
     large = gd.drape(plane, (0.0, 0.0, 0.0), 0.0, 10.0, reach=(40.0, 30.0))
     along = np.where(np.isfinite(small.lattice), [1.0, 0.0, 0.0], np.nan)
-    start = gone_along(large.lattice, large, small, along)
+    start = gone_along(large.lattice, large, replace(small, moved=along))
     known = np.isfinite(large.lattice[..., 0])
     np.testing.assert_allclose((start - large.lattice)[known], [[1.0, 0.0, 0.0]] * known.sum(), atol=1e-9)
 

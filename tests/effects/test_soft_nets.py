@@ -1,5 +1,7 @@
 """Nets that turn as a whole about their seed, and nets that refine a coarser one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -63,7 +65,7 @@ def test_a_net_goes_the_way_of_a_coarser_one_between_its_nodes(pitch):
     cap = shapes.sphere_cap(RADIUS, 60.0, 3.0)
     turn = Rotation.from_euler("z", 8.0, degrees=True).as_matrix()
     coarse, fine = (gd.drape(cap, (0.0, 0.0, RADIUS), a, p, project=True) for a, p in ((10.0, 10.0), (35.0, pitch)))
-    start = gone_along(fine.lattice, fine, coarse, coarse.lattice @ turn.T - coarse.lattice)
+    start = gone_along(fine.lattice, fine, replace(coarse, moved=coarse.lattice @ turn.T - coarse.lattice))
     apart = np.linalg.norm(start - fine.lattice @ turn.T, axis=2)
     inside = (np.abs(fine.u)[:, None] < 40.0) & (np.abs(fine.v) < 40.0)
     assert apart[inside].max() < 0.02
@@ -76,7 +78,7 @@ def test_nets_that_share_one_node_or_a_line_are_not_turned():
     for keep in (np.s_[4:5, 3:4], np.s_[:, 3:4]):
         moved = np.full(large.lattice.shape, np.nan)
         moved[keep] = [0.0, 3.0, 0.0]
-        start = gone_along(large.lattice, large, large, moved)
+        start = gone_along(large.lattice, large, replace(large, moved=moved))
         known = np.isfinite(large.lattice[..., 0])
         np.testing.assert_allclose(start[known] - large.lattice[known], [[0.0, 3.0, 0.0]] * known.sum(), atol=1e-9)
 
