@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -68,13 +69,15 @@ def _lifted(away: np.ndarray, normal: np.ndarray) -> np.ndarray:
 
 
 def _carried(points: np.ndarray, to: np.ndarray, sign: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Points (n, 3) carried as a whole to others, turned (sign 1) or mirrored (-1) as fits best (W. Kabsch, 1976).
+    """Points (n, 3) carried as a whole to others, turned (sign 1) or mirrored (-1) as fits best.
 
     With the move of their middle (3,) mm from where they should be, and the angle of the turn, degrees.
     """
+    from scipy.spatial.transform import Rotation
+
     middle, other = points.mean(axis=0), to.mean(axis=0)
-    left, _, right = np.linalg.svd((points - middle).T @ (to - other))
-    last = sign * np.sign(np.linalg.det(left) * np.linalg.det(right))
-    turn = left @ np.diag([1.0, 1.0, last]) @ right
-    angle = float(np.degrees(np.arccos(np.clip(0.5 * (np.trace(turn) - 1.0), -1.0, 1.0))))
-    return (points - middle) @ turn + other, middle - other, angle
+    away = sign * (points - middle)  # through their middle: a mirror and half a turn
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # on one line many turns are as good, and any will do
+        turn, _ = Rotation.align_vectors(to - other, away)
+    return turn.apply(away) + other, middle - other, float(np.degrees(turn.magnitude()))
