@@ -49,10 +49,10 @@ def refit(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
 
 
 def settled(experiment: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
-    """A model that is not costly, fitted to the end under another noise, its slopes by central differences.
+    """A model that is not costly, fitted on under another noise, its slopes by central differences.
 
     Those of a fit are corrected as it goes; these are of where its last steps began, which short steps do not
-    correct. After long ones they are taken again.
+    correct. After long ones they are taken again, ``PASSES`` times at most.
     """
     model, predict = old.model, Predictor(experiment, old.model)
     for _ in range(PASSES):
