@@ -126,7 +126,7 @@ def _read(folder: Path) -> dict[str, Any]:
 def reveal(folder: Path, anyway: bool, as_json: bool) -> int:
     """Check the seal of the set in FOLDER and show what was hidden beside what was found.
 
-    Exit code 0 if the verdict was right (or ambiguous, with the truth among its candidates) or none was graded, else 1.
+    Exit code 0 if the verdict was right (or ambiguous, with the truth among its candidates), or none graded; else 1.
 
     \b
     Examples:

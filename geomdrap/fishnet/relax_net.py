@@ -55,11 +55,11 @@ def gone_along(start: np.ndarray, net: Net, near: Net) -> np.ndarray:
 
     assert near.moved is not None
     across = _between(near.moved.swapaxes(0, 1), net.v, near.v).swapaxes(0, 1)
-    away = _between(across, net.u, near.u) @ (frame(near.warp0, near.normal0).T @ frame(net.warp0, net.normal0))
-    known = np.isfinite(away - start).all(axis=2)
+    moved = _between(across, net.u, near.u) @ (frame(near.warp0, near.normal0).T @ frame(net.warp0, net.normal0))
+    known = np.isfinite(moved - start).all(axis=2)
     if not known.any():
         return start
-    there = start + away
+    there = start + moved
     turned = _turned(start, start[known], there[known])
     near_to = distance_transform_edt(~known, return_distances=False, return_indices=True)
     more = (there - turned)[tuple(near_to)]
