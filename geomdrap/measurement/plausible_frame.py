@@ -43,8 +43,7 @@ def other_frame(net: Net, measurement: Measurement, found: Matched) -> str | Non
         what = "the points are those of a mirrored part (left for right, or an axis with the other sign)"
         return f"{what}: {said.format(left_mirrored, present)}"
     off = _unevenly_off(net, points)
-    lifted = _typical(_lifted(points - predicted, found.normal[found.used]))
-    if left < BETTER * min(present, lifted) and off > OFF * present:
+    if left < BETTER * present and off > OFF * present:
         turned = f" and turned by {turn:.3g} degrees" if turn > LEAST_TURN else ""
         x, y, z = np.round(move, 2) + 0.0
         what = f"the points are in another frame, moved by ({x:.4g}, {y:.4g}, {z:.4g}) mm{turned}"
@@ -61,11 +60,6 @@ def _unevenly_off(net: Net, points: np.ndarray) -> float:
     near = net.surface.nearest(points)
     height = np.einsum("ij,ij->i", points - near.point, net.surface.normals[near.face])
     return float(np.median(np.abs(height - np.median(height))))
-
-
-def _lifted(away: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """What a ply of some thickness leaves of residuals (n, 3): all of it is as far off the part."""
-    return away - float(np.median(np.einsum("ij,ij->i", away, normal))) * normal
 
 
 def _carried(points: np.ndarray, to: np.ndarray, sign: float) -> tuple[np.ndarray, np.ndarray, float]:
