@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -18,18 +18,19 @@ from geomdrap.fishnet.effect import fabric_with, in_order, net_with, surface_wit
 from geomdrap.fishnet.held_warp import HeldWarp
 from geomdrap.fishnet.laid_down import laid_down
 from geomdrap.fishnet.relax_net import UNREST
-from geomdrap.fishnet.sway import swayed
+from geomdrap.fishnet.sway import swayed, taken_along
 
 if TYPE_CHECKING:
     from geomdrap.criticism.layup import Layup
     from geomdrap.criticism.likelihood import Judge
+    from geomdrap.fishnet.laid_down import Start
     from geomdrap.measurement import Measurement
     from geomdrap.surface import Surface
 
 KEPT = 12  # surfaces with effects on them that are kept, and corrections of coarse nets
 KEPT_NETS = 3
 ALIKE = 0.3  # of their typical sizes: values differ by less where a net is relaxed from another one
-HARDLY_DIFFERENT = 0.15  # likewise, where what a coarse net gets wrong is the same
+HARDLY_DIFFERENT = 0.5  # likewise, where what a coarse net gets wrong is the same
 TOP = 97.0  # percentile of the shear that counts as the largest
 FINE, COARSE = 7000, 900  # nodes of the net, for what costs milliseconds and for what costs seconds
 
@@ -105,15 +106,14 @@ class Experiment:
     def _relaxed(self, effects: Sequence[Effect], pitch: float) -> Net:
         """A net of what is costly, from the last one with the same effects if that is much like it.
 
-        Over a longer way it might be held back in another balance than the one that a drape finds; whether many short
-        ways add up to that is not looked into.
+        On the same cells many short ways lead where one long one does; a long one takes as many rounds as a drape's.
         """
         acting = in_order(effects)
         names = f"{pitch!r} {'+'.join(e.name for e in acting)}"
         before, last = self.last.get(names, (acting, None))
         near = last if _apart(before, acting) <= ALIKE else None
-        net = self._draped(effects, pitch, near) if near is not None else self._first(acting, pitch)
-        if near is not None and restless(net):
+        net = None if near is None else self._beside(near, acting, taken_along) or self._draped(effects, pitch, near)
+        if net is None or (near is not None and restless(net)):
             net = self._first(acting, pitch)
         if not restless(net):
             self.last[names] = acting, net
@@ -143,13 +143,17 @@ class Experiment:
             return None
         if not fabric_with(in_order(others), Fabric()).relaxes:
             return self._on_net_beside(effects, others)
-        near, lay, (surface, acting) = self.draped(effects, self.pitches[1]), self.layup, self._with_hold(others)
-        if restless(near):
-            return None
-        laid = lay.origin, lay.angle, near.pitch, Fabric(), in_order(acting), lay.reference, lay.project
-        swung = swayed(near, laid_down(surface, *laid))
-        net = None if swung is None else net_with(in_order(acting), swung)
+        near = self.draped(effects, self.pitches[1])
+        net = None if restless(near) else self._beside(near, others, swayed)
         return None if net is None or restless(net) else self._flat(net) - self._flat(near)
+
+    def _beside(self, near: Net, effects: Sequence[Effect], how: Callable[[Net, Start], Net | None]) -> Net | None:
+        """The net of a ply with effects, from one near and ``how`` its start makes a net of that; None for none."""
+        lay, (surface, others) = self.layup, self._with_hold(effects)
+        acting = in_order(others)
+        start = laid_down(surface, lay.origin, lay.angle, near.pitch, Fabric(), acting, lay.reference, lay.project)
+        net = how(near, start)
+        return None if net is None else replace(net_with(acting, net), effects=acting)
 
     def _on_net_beside(self, effects: Sequence[Effect], others: Sequence[Effect]) -> np.ndarray | None:
         """Likewise where what is costly acts on the net, and where the ply is laid hardly matters to that."""
@@ -224,6 +228,10 @@ class Experiment:
     def at_the_end(self) -> Experiment:
         """The same experiment without what is large and soon made again."""
         return replace(self, surfaces={}, judges={}, coarseness=[])
+
+    def forgetting_nets(self) -> Experiment:
+        """The same experiment without the nets of what is costly, so that the next one is draped anew."""
+        return replace(self, costly={}, last={})
 
     def unsmoothed(self) -> Experiment:
         """The same experiment with nets on the facets themselves, not on the smooth tool that they stand for."""

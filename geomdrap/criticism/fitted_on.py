@@ -85,7 +85,8 @@ def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted)
     """
     model = old.model
     predict = Predictor(finer, model)
-    if any(make(name).costly and make(name).stage == "fabric" for name in model.effects):
+    relaxed = any(make(name).costly and make(name).stage == "fabric" for name in model.effects)
+    if relaxed:
         # slopes of the coarser ones, or worn ones, would hide how heading and stiffness make up for each other
         slopes, lasting = None, 0
     else:
@@ -95,6 +96,9 @@ def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted)
     less = _from_less(model, predict, finer.measured, whiten, found)
     if less.chi2 < found.chi2:
         found = fit(predict, finer.measured, whiten, less.values, *way, beside=predict.beside)
+    if relaxed:  # nets taken along keep the cells that they were laid with
+        predict, way = Predictor(finer.forgetting_nets(), model), (model.steps, *model.bounds, found.slopes, 1)
+        found = fit(predict, finer.measured, whiten, found.values, *way, beside=predict.beside)
     ratio, moved = coarser.pitches[1] / finer.pitches[1], np.abs(found.values - old.values)
     return Fitted(model, found, moved / (ratio**2 - 1.0) if ratio > 1.0 and moved.any() else None)
 

@@ -1,7 +1,7 @@
-"""Nets of least energy beside one that is at rest: to first order, for slopes.
+"""Nets of least energy beside one that is at rest, on its nodes and cells.
 
-One Newton step on the nodes and cells of the net at rest takes the place of a drape and of all the rounds to a new
-balance. For a placement the net goes with its seed as a rigid body first, so that the step is small.
+To first order, for slopes: one Newton step takes the place of a drape and of all the rounds to a new balance. Or at
+rest again, which takes a few rounds. For a placement the net goes with its seed as a rigid body first.
 """
 
 from __future__ import annotations
@@ -13,20 +13,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.fishnet.dissection import dissect
-from geomdrap.fishnet.relax import Relaxed, placed
+from geomdrap.fishnet.relax import Relaxed, placed, relax
 from geomdrap.fishnet.relax_equations import equations_at, newton_step
-from geomdrap.fishnet.relax_net import as_net, frame
+from geomdrap.fishnet.relax_net import Balance, as_net, frame
 from geomdrap.fishnet.relax_problem import law_of, needs_no_hold
 from geomdrap.fishnet.relax_surface import stand
 
 if TYPE_CHECKING:
-    from geomdrap.fishnet.fabric import Fabric
     from geomdrap.fishnet.laid_down import Start
     from geomdrap.fishnet.net import Net
-    from geomdrap.fishnet.relax_net import Balance
     from geomdrap.fishnet.relax_problem import Problem
     from geomdrap.fishnet.relax_surface import Footing
 
+TAKEN = 0.25  # of the pitch: how far from where a net was laid its nodes and cells serve another one
 LAW = {name: None for name in ("shear_stiffness", "locking_angle", "shear_asymmetry", "bending_length")}
 
 
@@ -36,22 +35,62 @@ def swayed(near: Net, start: Start) -> Net | None:
     Before the effects that act on nets. None where it differs in more than its placement and the law of its fabric,
     or the other net is not one of least energy.
     """
-    if near.balance is None or start.part is not near.surface or not _alike(start.fabric, near.fabric):
+    if near.balance is None or not _alike(near, start):
         return None
-    laid, problem, found = near.balance
+    there, footing, _ = _gone_with(near, near.balance, start)
+    beside = stepped(near.balance, there, footing)
+    laid, problem, _ = near.balance
+    return None if beside is None else as_net(replace(laid, fabric=start.fabric), problem, beside)
+
+
+def taken_along(near: Net, start: Start) -> Net | None:
+    """The net of least energy of a ply at its ``start``, on the nodes and cells of a net ``near`` at rest.
+
+    That takes less time than a drape, and what lies at the rim does not change from one net to the next. Before the
+    effects that act on nets. None as of ``swayed``, and where the ply lies further than ``TAKEN`` of the pitch from
+    where those nodes were laid: others would be on the part.
+    """
+    if near.balance is None or not _alike(near, start):
+        return None
+    there, footing, laid_there = _gone_with(near, near.balance, start)
+    laid, problem, _ = near.balance
+    if not np.linalg.norm(laid_there - problem.footing.point, axis=1).max() <= TAKEN * laid.pitch:
+        return None
+    found, seed = relax(there, footing), start.seed
+    net = as_net(replace(laid, fabric=start.fabric), there, found)
+    return replace(
+        net,
+        origin=seed.point,
+        origin_face=seed.face,
+        warp0=seed.warp,
+        weft0=seed.weft,
+        normal0=seed.normal,
+        angle=start.angle,
+        moved=there.on_net(found.footing.point - laid_there, math.nan),
+        balance=Balance(laid, there, found),
+    )
+
+
+def _gone_with(near: Net, rest: Balance, start: Start) -> tuple[Problem, Footing, np.ndarray]:
+    """A net ``near`` at ``rest`` gone with its seed to a ``start``, as a rigid body.
+
+    The problem of the ply there, where its nodes stand, and where those (n, 3) of the geometric net have gone.
+    """
+    laid, problem, found = rest
     # of the rounded part: facets beside each other are at degrees, with which the far end would leave the part
-    normals = stand(problem.surface, np.array([laid.origin, start.seed.point])).normal
-    turn = frame(laid.warp0, normals[0]).T @ frame(start.seed.warp, normals[1])
-    carried = start.seed.point + (np.concatenate((found.footing.point, problem.held)) - laid.origin) @ turn
+    origins = np.array([laid.origin, near.origin, start.seed.point])
+    normals = stand(problem.surface, origins).normal
+    warps = laid.warp0, near.warp0, start.seed.warp
+    first, before, now = (frame(warp, normal) for warp, normal in zip(warps, normals, strict=True))
+    carried = start.seed.point + (np.concatenate((found.footing.point, problem.held)) - near.origin) @ before.T @ now
     there = replace(
         problem,
         law=law_of(start.fabric),
         held=np.array([start.seed.point, carried[-1]]),
         side=np.cross(start.seed.normal, start.seed.warp),
-        footing=found.footing,
     )
-    beside = stepped(near.balance, there, placed(there, there.on_net(carried[:-2], math.nan)))
-    return None if beside is None else as_net(replace(laid, fabric=start.fabric), problem, beside)
+    footing = placed(replace(there, footing=found.footing), there.on_net(carried[:-2], math.nan))
+    return there, footing, start.seed.point + (problem.footing.point - laid.origin) @ first.T @ now
 
 
 def stepped(rest: Balance, there: Problem, footing: Footing, full: bool = True) -> Relaxed | None:
@@ -77,7 +116,9 @@ def stepped(rest: Balance, there: Problem, footing: Footing, full: bool = True) 
     return Relaxed(x, footing, math.nan, found.unrest, 1)
 
 
-def _alike(one: Fabric, other: Fabric) -> bool:
-    """Whether fabrics differ in the size of their stiffness only."""
+def _alike(near: Net, start: Start) -> bool:
+    """Whether a ply differs from a net in its placement and in the size of its stiffness only."""
+    one, other = near.fabric, start.fabric
     kinds = [[f.relaxes, needs_no_hold(f), bool(f.bending_length)] for f in (one, other)]
-    return kinds[0] == kinds[1] and one.relaxes and replace(one, **LAW) == replace(other, **LAW)  # type: ignore[arg-type]
+    same = kinds[0] == kinds[1] and replace(one, **LAW) == replace(other, **LAW)  # type: ignore[arg-type]
+    return start.part is near.surface and one.relaxes and same

@@ -181,6 +181,9 @@ class WithoutNets:
     def beside(self, effects, others):
         return None
 
+    def forgetting_nets(self):
+        return self
+
 
 class OfSecondOrder(WithoutNets):
     """An experiment whose net is off by PER_PITCH·pitch² in every value."""
@@ -203,6 +206,21 @@ def test_the_doubt_is_what_the_finer_net_is_still_off(coarse, fine):
     got = refined(OfSecondOrder(coarse), OfSecondOrder(fine), lambda a: a, found_at(coarse))
     np.testing.assert_allclose(got.values, found_at(fine).values)
     np.testing.assert_allclose(got.doubt, np.abs(got.values - TRUTH))
+
+
+@pytest.mark.parametrize(("effect", "last_word"), [("shear-stiffness", "anew"), ("thickness", "taken along")])
+def test_the_last_word_on_relaxed_nets_has_one_that_is_draped_anew(effect, last_word):
+    """Nets that are taken along keep the cells that they were laid with; what does not relax is never taken along."""
+
+    class Along(OfSecondOrder):
+        def forgetting_nets(self):
+            return OfSecondOrder(1.0)
+
+    old = Fitted(Model((effect,)), Fit(np.array([0.0, 0.0, 0.0, 0.1]), np.zeros(POINTS), SLOPES, 0.0))
+    got = refined(OfSecondOrder(4.0), Along(2.0), lambda a: a, old)
+    where = {"anew": 1.0, "taken along": 2.0}[last_word]
+    expected = SLOPES @ TRUTH - OfSecondOrder(where).predict(old.model.built(got.values))
+    np.testing.assert_allclose(got.fit.residual, expected, atol=1e-12)
 
 
 def test_without_a_finer_net_no_doubt_is_known():

@@ -1,4 +1,4 @@
-"""Nets beside one at rest, to first order: as those that come to rest themselves, and none where that cannot be.
+"""Nets beside one at rest, to first order or at rest again: as those that are draped, none where that cannot be.
 
 Steps are so small that no cell at the rim comes or goes, which moves the nodes beside it by tenths of a millimetre.
 """
@@ -11,7 +11,8 @@ from geomdrap.fishnet import Fabric
 from geomdrap.fishnet.effect import in_order, net_with, surface_with
 from geomdrap.fishnet.held_warp import HeldWarp
 from geomdrap.fishnet.laid_down import laid_down
-from geomdrap.fishnet.sway import swayed
+from geomdrap.fishnet.relax import BALANCED
+from geomdrap.fishnet.sway import TAKEN, swayed, taken_along
 from geomdrap.surface import shapes
 
 SEED, ANGLE, PITCH = (4.0, -3.0, 50.0), 20.0, 8.0
@@ -35,9 +36,17 @@ def at_rest(part, acting, near=None):
     return gd.drape(part, SEED, ANGLE, PITCH, effects=acting, project=True, near=near)
 
 
-def to_first_order(part, near, acting):
+def start_of(part, acting):
     acting = in_order(acting)
-    return swayed(near, laid_down(surface_with(acting, part), SEED, ANGLE, PITCH, Fabric(), acting, None, True))
+    return laid_down(surface_with(acting, part), SEED, ANGLE, PITCH, Fabric(), acting, None, True)
+
+
+def to_first_order(part, near, acting):
+    return swayed(near, start_of(part, acting))
+
+
+def along(part, near, acting):
+    return taken_along(near, start_of(part, acting))
 
 
 SOFT = {"shear-stiffness": {"ratio": 0.02}}
@@ -65,6 +74,46 @@ def test_it_is_as_the_net_that_comes_to_rest_itself(dome, of, shift, then):
     shear = full.shear[np.ix_(i, j)] - near.shear[np.ix_(k, m)]
     left = full.shear[np.ix_(i, j)] - quick.shear[np.ix_(k, m)]
     assert np.sqrt(np.nanmean(left**2)) < 0.1 * np.sqrt(np.nanmean(shear**2)) + 0.002
+
+
+@pytest.mark.parametrize(("of", "shift", "then"), CASES)
+def test_a_net_taken_along_is_the_one_that_is_draped(dome, of, shift, then):
+    """Both are at rest, on the same cells: they are one net, up to what is left of the forces."""
+    near = at_rest(dome, effects(of))
+    full, taken = at_rest(dome, effects(then, shift), near), along(dome, near, effects(then, shift))
+    assert taken.balance.found.unrest < BALANCED
+    _, i, k = np.intersect1d(full.u, taken.u, return_indices=True)
+    _, j, m = np.intersect1d(full.v, taken.v, return_indices=True)
+    error = full.points[np.ix_(i, j)] - taken.points[np.ix_(k, m)]
+    moved = full.points[np.ix_(i, j)] - near.points[np.ix_(k, m)]
+    assert np.isfinite(error).sum() > 0.95 * np.isfinite(full.points).sum()
+    assert np.sqrt(np.nanmean(error**2)) < 0.02 * np.sqrt(np.nanmean(moved**2))
+    np.testing.assert_allclose(taken.origin, full.origin, atol=1e-9)
+    np.testing.assert_allclose(taken.warp0, full.warp0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "law", [("shear-stiffness", "ratio", 0.02), ("yarn-bending", "length", 40.0), ("locking", "angle", 8.0)]
+)
+def test_many_short_ways_lead_where_one_long_one_does(dome, law):
+    """No net is held back in another balance on its way: on the same cells there is one, and draped anew as well."""
+    name, key, value = law
+    first = taken = draped = at_rest(dome, effects({name: {key: value}}))
+    for share in np.linspace(0.0, 1.0, 9)[1:]:
+        then = effects({name: {key: value * 0.7**share}}, (0.4 * share, -0.3 * share, 0.1 * share))
+        taken, draped = along(dome, taken, then), at_rest(dome, then, draped)
+    assert np.nanmax(np.linalg.norm(taken.points - along(dome, first, then).points, axis=2)) < 1e-3
+    assert np.nanmax(np.linalg.norm(draped.points - at_rest(dome, then).points, axis=2)) < 1e-3
+
+
+def test_a_net_is_not_taken_along_to_where_other_cells_would_be_on_the_part(dome):
+    near = at_rest(dome, effects(SOFT))
+    assert along(dome, near, effects(SOFT, (0.4 * TAKEN * PITCH, 0.0, 0.0))) is not None
+    assert along(dome, near, effects(SOFT, (1.1 * TAKEN * PITCH, 0.0, 0.0))) is None
+    twice = along(dome, near, effects(SOFT, (0.4 * TAKEN * PITCH, 0.0, 0.0)))
+    assert along(dome, twice, effects(SOFT, (1.1 * TAKEN * PITCH, 0.0, 0.0))) is None  # counted from where it was laid
+    assert along(dome, near, effects({"locking": {"angle": 10.0}})) is None
+    assert along(dome, near, effects(SOFT, thickness={"offset": 1.0})) is None
 
 
 def test_it_is_none_where_more_than_placement_and_stiffness_differ(dome):
