@@ -9,7 +9,7 @@ import numpy as np
 
 from geomdrap.criticism.evidence import MOST, alike_in_what_they_leave, rivals
 from geomdrap.criticism.experiment import Experiment
-from geomdrap.criticism.final import contenders, final, told_apart
+from geomdrap.criticism.final import contenders, final, left_behind, told_apart
 from geomdrap.criticism.jackknife import widened
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
@@ -94,6 +94,30 @@ def _anew(meant: Experiment, experiment: Experiment, model: Fitted, before: Scat
     return judge_of(experiment, rows).best_scatter([residuals], [0])[0][0]
 
 
+def _last_word(meant: Experiment, experiment: Experiment, model: Fitted, before: Scatter) -> tuple[Scatter, Leftover]:
+    """The scatter of a model anew, as of ``_anew``, and what the model leaves under that."""
+    scatter = _anew(meant, experiment, model, before)
+    return scatter, left_over(experiment, model, scatter)
+
+
+def _unexplained(first: Round, model: Fitted, left: Leftover) -> bool:
+    """Whether a model leaves structure, and so much of it that it needs a cause."""
+    return left.structured and leaves(first, model, UNEXPLAINED)
+
+
+def _heard(
+    meant: Experiment, first: Round, last: Round, done: Callable[[str], None]
+) -> tuple[dict[str, tuple[Experiment, Fitted]], Round]:
+    """As of ``told_apart``; where the best leaves what needs a cause, what coarse nets left behind is heard, too."""
+    hearing = contenders(last.evidence)
+    ends, seen = told_apart(meant, last, hearing, done)
+    best, (experiment, model) = next(iter(ends.items()))
+    behind = left_behind(last.evidence, best, hearing)
+    if behind and _unexplained(first, model, _last_word(meant, experiment, model, seen.trial(best)[1])[1]):
+        return told_apart(meant, last, (*ends, *behind), done, ends)
+    return ends, seen
+
+
 def ended(meant: Experiment, rounds: Sequence[Round], done: Callable[[str], None]) -> End:
     """The end of a search, in an experiment as it was ``meant``; ``done`` is told each effect that is fitted on."""
     names, model, scatter = found_by(rounds)
@@ -101,12 +125,11 @@ def ended(meant: Experiment, rounds: Sequence[Round], done: Callable[[str], None
     ends: dict[str, tuple[Experiment, Fitted]] = {}
     if names:
         k = len(names) - 1
-        ends, seen = told_apart(meant, rounds[k], contenders(rounds[k].evidence), done)
+        ends, seen = _heard(meant, rounds[0], rounds[k], done)
         alike, rounds = tuple(ends), [*rounds[:k], seen, *rounds[k + 1 :]]
         names, scatter = [*names[:k], alike[0]], seen.trial(alike[0])[1]
     experiment, model = ends[alike[0]] if alike else final(meant, model, scatter)
-    scatter = _anew(meant, experiment, model, scatter)
-    left = left_over(experiment, model, scatter)
+    scatter, left = _last_word(meant, experiment, model, scatter)
     # a plateau that the model found does not foretell is no matter of chance: nothing else makes one
     if locks(experiment, rounds[0]) and (left.structured or shear_stops(experiment, model, scatter)):
         alike = (LOCKING,)
@@ -114,14 +137,13 @@ def ended(meant: Experiment, rounds: Sequence[Round], done: Callable[[str], None
             names = [LOCKING]
             model, scatter = rounds[0].trial(LOCKING)
             experiment, model = final(meant, model, scatter)
-            scatter = _anew(meant, experiment, model, scatter)
-            left = left_over(experiment, model, scatter)
+            scatter, left = _last_word(meant, experiment, model, scatter)
     if LOCKING in names:
         model = doubted(experiment, rounds[0], model)
     model = widened(experiment, model, scatter)
     coarse = {name: rounds[len(names) - 1].trial(name)[1] for name in alike[1:] if name in ends}
     near = {name: widened(*ends[name], _anew(meant, *ends[name], before)) for name, before in coarse.items()}
-    unexplained = left.structured and leaves(rounds[0], model, UNEXPLAINED) and names != [LOCKING]
+    unexplained = _unexplained(rounds[0], model, left) and names != [LOCKING]
     if unexplained and len(alike) == 1:
         others = alike_in_what_they_leave(rounds[len(names) - 1].evidence)
         alike = others if names[-1] in others else alike

@@ -45,7 +45,8 @@ class Experiment:
     the values tried, by its name; ``warnings`` of the table. ``frames`` (n, 3, 3): along the warp, across it, and the
     normal. What is costly is kept: ``surfaces`` with effects on them and how their facets were split (``splits``),
     the ``coarseness`` of nets, the last ``costly`` nets, and ``judges`` of some values. ``coarser``: the pitch, mm,
-    of the nets which those for what is costly refine, None where they are the first.
+    of the nets which those for what is costly refine, None where they are the first. ``takes_along``: whether relaxed
+    nets may keep the cells of one like them.
     """
 
     surface: Surface
@@ -67,6 +68,7 @@ class Experiment:
     last: dict[str, tuple[Sequence[Effect], Net | None]] = field(default_factory=dict)
     judges: dict[bytes, Judge] = field(default_factory=dict)
     on_facets: bool = False
+    takes_along: bool = True
     coarser: float | None = None
 
     def predict(self, effects: Sequence[Effect] = ()) -> np.ndarray:
@@ -112,12 +114,20 @@ class Experiment:
         names = f"{pitch!r} {'+'.join(e.name for e in acting)}"
         before, last = self.last.get(names, (acting, None))
         near = last if _apart(before, acting) <= ALIKE else None
-        net = None if near is None else self._beside(near, acting, taken_along) or self._draped(effects, pitch, near)
-        if net is None or (near is not None and restless(net)):
+        net = None if near is None else self._from(near, acting, pitch)
+        if net is None or restless(net):
             net = self._first(acting, pitch)
         if not restless(net):
             self.last[names] = acting, net
         return net
+
+    def _from(self, near: Net, effects: Sequence[Effect], pitch: float) -> Net:
+        """A net of what is costly from one near it: taken along, else draped and relaxed from where that has gone."""
+        if self.takes_along and near.balance is not None:
+            net = self._beside(near, effects, taken_along)
+            if net is not None:
+                return net
+        return self._draped(effects, pitch, near)
 
     def _first(self, effects: Sequence[Effect], pitch: float) -> Net:
         """A net of what is costly, from a coarser one if that is of least energy and at rest."""
@@ -229,9 +239,9 @@ class Experiment:
         """The same experiment without what is large and soon made again."""
         return replace(self, surfaces={}, judges={}, coarseness=[])
 
-    def forgetting_nets(self) -> Experiment:
-        """The same experiment without the nets of what is costly, so that the next one is draped anew."""
-        return replace(self, costly={}, last={})
+    def draping_anew(self) -> Experiment:
+        """The same experiment in which every relaxed net is draped, with the cells that are on the part there."""
+        return replace(self, takes_along=False, costly={}, last={}, coarseness=[])
 
     def unsmoothed(self) -> Experiment:
         """The same experiment with nets on the facets themselves, not on the smooth tool that they stand for."""

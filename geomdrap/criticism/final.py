@@ -5,8 +5,9 @@ On a coarse net a model of another effect may do as well, for what it makes up o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -14,11 +15,12 @@ from geomdrap.criticism.evidence import MOST, RIVAL_SHARE, Evidence, rivals
 from geomdrap.criticism.experiment import Experiment, restless
 from geomdrap.criticism.fitted_on import doubted_for_facets, doubted_for_pitch, refined, settled
 from geomdrap.criticism.likelihood import Scatter, is_noise
-from geomdrap.criticism.model import Fitted
+from geomdrap.criticism.model import Fitted, relaxes
 from geomdrap.criticism.search import Round, judge_of
 from geomdrap.effects import make
 
 ELSEWHERE = 1.5  # of the chi-square on the coarser net: a finer one that fits worse came to rest elsewhere
+NOT_FAR = 0.5  # of what the best explains on coarse nets: what explains as much may do better on finer ones
 FINER = 4.0  # times smaller are the errors of a net of half the pitch
 
 
@@ -35,7 +37,7 @@ def final(experiment: Experiment, model: Fitted, scatter: Scatter) -> tuple[Expe
         finer = experiment.finer()
         if not rests(finer, model):
             return experiment, doubted_for_facets(experiment, model)
-        better = refined(experiment, finer, whiten, model)
+        finer, better = refined(experiment, finer, whiten, model)
         before = float((whiten(np.nan_to_num(model.fit.residual)) ** 2).sum())
         kept, model = (finer, better) if better.fit.chi2 <= ELSEWHERE * before else (experiment, model)
         return kept, doubted_for_facets(experiment, model)
@@ -69,18 +71,35 @@ def contenders(evidence: Sequence[Evidence]) -> tuple[str, ...]:
     return (*near, *(e.name for e in less if e.found and e.share >= MOST))
 
 
+def left_behind(evidence: Sequence[Evidence], best: str, heard: Collection[str]) -> tuple[str, ...]:
+    """Effects on relaxed nets, not ``heard`` yet, that coarse nets left behind another one of them, the ``best``.
+
+    A saddle that resisted shear was bent yarns to coarse nets, seven hundred of chi-square better; on finer ones
+    these left structure, and stiffness nothing.
+    """
+    of = {e.name: e for e in evidence}
+    near = [e for e in evidence if e.found and e.name not in heard and e.share >= NOT_FAR * of[best].share]
+    return tuple(e.name for e in near if relaxes(e.name)) if relaxes(best) else ()
+
+
 def told_apart(
-    experiment: Experiment, last: Round, alike: Sequence[str], done: Callable[[str], None]
+    experiment: Experiment,
+    last: Round,
+    alike: Sequence[str],
+    done: Callable[[str], None],
+    known: Mapping[str, tuple[Experiment, Fitted]] = MappingProxyType({}),
 ) -> tuple[dict[str, tuple[Experiment, Fitted]], Round]:
     """The contenders ``alike`` that finer nets leave, the best first, fitted to the end; the round as those see it.
 
     ``last`` is the round of the search that found them. What nets on which costly ones could not be fitted do not
     tell apart stays as it was. What comes to another one at small values is not fitted on where that leaves but
-    noise. ``done`` is told each name.
+    noise, under the scatter of the other. ``done`` is told each name; ``known`` were fitted to the end before.
     """
-    ends: dict[str, tuple[Experiment, Fitted]] = {}
-    for name in sorted(alike, key=lambda name: not set(alike).isdisjoint(make(name).includes)):
-        if not any(_is_enough(experiment, *ends[less]) for less in make(name).includes if less in ends):
+    ends = dict(known)
+    new = [name for name in alike if name not in known]
+    for name in sorted(new, key=lambda name: not set(alike).isdisjoint(make(name).includes)):
+        scatter = last.trial(name)[1]
+        if not any(_is_enough(experiment, *ends[less], scatter) for less in make(name).includes if less in ends):
             done(name)
             ends[name] = final(experiment, *last.trial(name))
     last = replace(last, evidence=_no_better(last.evidence, [name for name in alike if name not in ends]))
@@ -95,9 +114,16 @@ def told_apart(
     return {name: ends[name] for name in rivals([e for e in seen.evidence if e.name in square], margin)}, seen
 
 
-def _is_enough(experiment: Experiment, finer: Experiment, model: Fitted) -> bool:
-    """Whether a model leaves but noise on nets finer than those of the experiment: more of it would say no more."""
-    return finer is not experiment and is_noise(model.fit.chi2, len(model.fit.residual))
+def _is_enough(experiment: Experiment, finer: Experiment, model: Fitted, scatter: Scatter) -> bool:
+    """Whether a model leaves but noise on nets finer than those of the experiment: more of it would say no more.
+
+    Under the ``scatter`` that more of it leaves: its own may hide what it lacks.
+    """
+    rows = np.isfinite(model.fit.residual)
+    if finer is experiment or not is_noise(model.fit.chi2, len(rows)):
+        return False
+    white = judge_of(experiment, rows).whiten(scatter)(model.fit.residual[rows])
+    return is_noise(float((white**2).sum()), int(rows.sum()))
 
 
 def _no_better(evidence: Sequence[Evidence], names: Sequence[str]) -> tuple[Evidence, ...]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from geomdrap.criticism.fit import LOOSE, Fit, fit
 from geomdrap.criticism.likelihood import is_noise
-from geomdrap.criticism.model import CREEP, NEARLY, Fitted, Model, Predictor, Whiten
+from geomdrap.criticism.model import CREEP, NEARLY, Fitted, Model, Predictor, Whiten, relaxes
 from geomdrap.criticism.smooth import note_on
 from geomdrap.effects import make
 
@@ -77,30 +77,28 @@ def _central_slopes(predict: Predictor, at: Fitted) -> np.ndarray:
     return slopes
 
 
-def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted) -> Fitted:
-    """A costly model fitted on from where it was, on the finer nets of ``finer``.
+def refined(coarser: Experiment, finer: Experiment, whiten: Whiten, old: Fitted) -> tuple[Experiment, Fitted]:
+    """A costly model fitted on from where it was, on the finer nets of ``finer``; and the experiment with its nets.
 
     Nets are of second order in the pitch: of what a pitch ``ratio`` times smaller changed in the values,
     1/(ratio² - 1) is left, a third where it was halved. Where no step was taken, nothing is known of it.
     """
     model = old.model
     predict = Predictor(finer, model)
-    relaxed = any(make(name).costly and make(name).stage == "fabric" for name in model.effects)
-    if relaxed:
-        # slopes of the coarser ones, or worn ones, would hide how heading and stiffness make up for each other
-        slopes, lasting = None, 0
-    else:
-        slopes, lasting = old.fit.slopes, len(Model(()).neutral)
+    relaxed = any(map(relaxes, model.effects))
+    # slopes of the coarser ones, or worn ones, would hide how heading and stiffness make up for each other
+    slopes, lasting = (None, 0) if relaxed else (old.fit.slopes, len(Model(()).neutral))
     way = model.steps, *model.bounds, slopes, REFINEMENTS
     found = fit(predict, finer.measured, whiten, old.values, *way, beside=predict.beside, lasting=lasting)
     less = _from_less(model, predict, finer.measured, whiten, found)
     if less.chi2 < found.chi2:
         found = fit(predict, finer.measured, whiten, less.values, *way, beside=predict.beside)
     if relaxed:  # nets taken along keep the cells that they were laid with
-        predict, way = Predictor(finer.forgetting_nets(), model), (model.steps, *model.bounds, found.slopes, 1)
+        finer = finer.draping_anew()
+        predict, way = Predictor(finer, model), (model.steps, *model.bounds, found.slopes, LAST_STEPS)
         found = fit(predict, finer.measured, whiten, found.values, *way, beside=predict.beside)
     ratio, moved = coarser.pitches[1] / finer.pitches[1], np.abs(found.values - old.values)
-    return Fitted(model, found, moved / (ratio**2 - 1.0) if ratio > 1.0 and moved.any() else None)
+    return finer, Fitted(model, found, moved / (ratio**2 - 1.0) if ratio > 1.0 and moved.any() else None)
 
 
 def _from_less(model: Model, predict: Predictor, measured: np.ndarray, whiten: Whiten, found: Fit) -> Fit:

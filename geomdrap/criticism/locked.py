@@ -40,7 +40,7 @@ def locks(experiment: Experiment, first: Round) -> bool:
     Yarns that buckled as the ply locked lie where no net foretells, and leave a small share to any of them.
     """
     own = next((e for e in first.evidence if e.name == LOCKING), None)
-    if own is None or own.p_family >= FAMILY:
+    if own is None or own.p_family >= FAMILY or not own.in_range:
         return False
     best = own.cv_ratio < FORETELLS and all(e.gain <= own.gain for e in first.evidence)
     return (own.share >= LEAST_SHARE or best) and first_stop(experiment, first) is not None

@@ -193,6 +193,12 @@ def slow(effect: str) -> bool:
     return kind.slow or kind.costly or kind.stage == "surface"
 
 
+def relaxes(effect: str) -> bool:
+    """Whether nets with an effect are of least energy."""
+    kind = make(effect)
+    return kind.costly and kind.stage == "fabric"
+
+
 def add_effect(
     experiment: Experiment,
     whiten: Whiten,

@@ -39,8 +39,7 @@ def swayed(near: Net, start: Start) -> Net | None:
         return None
     there, footing, _ = _gone_with(near, near.balance, start)
     beside = stepped(near.balance, there, footing)
-    laid, problem, _ = near.balance
-    return None if beside is None else as_net(replace(laid, fabric=start.fabric), problem, beside)
+    return None if beside is None else _of_start(start, near.balance.laid, near.balance.problem, beside)
 
 
 def taken_along(near: Net, start: Start) -> Net | None:
@@ -52,22 +51,26 @@ def taken_along(near: Net, start: Start) -> Net | None:
     """
     if near.balance is None or not _alike(near, start):
         return None
-    there, footing, laid_there = _gone_with(near, near.balance, start)
-    laid, problem, _ = near.balance
-    if not np.linalg.norm(laid_there - problem.footing.point, axis=1).max() <= TAKEN * laid.pitch:
+    laid = near.balance.laid
+    there, footing, gone = _gone_with(near, near.balance, start)
+    if not np.linalg.norm(gone - there.footing.point, axis=1).max() <= TAKEN * laid.pitch:
         return None
-    found, seed = relax(there, footing), start.seed
-    net = as_net(replace(laid, fabric=start.fabric), there, found)
+    found = relax(there, footing)
+    moved = there.on_net(found.footing.point - gone, math.nan)
+    return replace(_of_start(start, laid, there, found), moved=moved, balance=Balance(laid, there, found))
+
+
+def _of_start(start: Start, laid: Net, problem: Problem, found: Relaxed) -> Net:
+    """The net of a ply at its ``start``, on the nodes and cells of another that was ``laid``."""
+    seed = start.seed
     return replace(
-        net,
+        as_net(replace(laid, fabric=start.fabric), problem, found),
         origin=seed.point,
         origin_face=seed.face,
         warp0=seed.warp,
         weft0=seed.weft,
         normal0=seed.normal,
         angle=start.angle,
-        moved=there.on_net(found.footing.point - laid_there, math.nan),
-        balance=Balance(laid, there, found),
     )
 
 
@@ -90,7 +93,8 @@ def _gone_with(near: Net, rest: Balance, start: Start) -> tuple[Problem, Footing
         side=np.cross(start.seed.normal, start.seed.warp),
     )
     footing = placed(replace(there, footing=found.footing), there.on_net(carried[:-2], math.nan))
-    return there, footing, start.seed.point + (problem.footing.point - laid.origin) @ first.T @ now
+    gone = start.seed.point + (problem.footing.point - laid.origin) @ first.T @ now
+    return there, footing, stand(problem.surface, gone, problem.footing.face).point
 
 
 def stepped(rest: Balance, there: Problem, footing: Footing, full: bool = True) -> Relaxed | None:

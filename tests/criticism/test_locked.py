@@ -33,12 +33,12 @@ def of_shear(measured):
     )
 
 
-def first_round(measured, share, cv_ratio=0.7, rival=10.0):
+def first_round(measured, share, cv_ratio=0.7, rival=10.0, acts=True):
     """What a search sees of measured shear: an experiment and its first round."""
     experiment = of_shear(measured)
     base = Fitted(Model(()), Fit(np.zeros(3), measured - PREDICTED, np.zeros((60, 3)), 0.0))
     evidence = (
-        Evidence("locking", 50.0, 3, 1e-9, 1e-8, share, cv_ratio, True),
+        Evidence("locking", 50.0, 3, 1e-9, 1e-8, share, cv_ratio, acts),
         Evidence("steering", rival, 2, 0.5, 1.0, 0.01, 1.0, False),
     )
     return experiment, SimpleNamespace(base=base, scatter=(NO_SCATTER,), evidence=evidence)
@@ -52,6 +52,7 @@ def test_shear_that_stops_is_locking_where_that_explains_most_or_more_than_all_e
     assert not locks(*first_round(stopped, 0.05, rival=60.0))
     assert not locks(*first_round(stopped, 0.05, cv_ratio=1.0))
     assert not locks(*first_round(grown, 0.05))
+    assert not locks(*first_round(stopped, 0.5, acts=False))  # only looked at, since another effect explains far more
 
 
 def doubt_of_the_angle(measured, monkeypatch, pitch_doubt=None):
