@@ -183,13 +183,19 @@ def _weigh(
                 unknowns=unknowns[k],
                 p_value=p_values[k],
                 p_family=float(family[k]),
-                share=min((squares[0] - squares[k + 1]) / misfit, 1.0),
+                share=0.0 if _does_nothing(model) else min((squares[0] - squares[k + 1]) / misfit, 1.0),
                 cv_ratio=errors[k + 1] / errors[0],
                 in_range=_in_range(model, spreads[k], includes[k]),
                 includes=includes[k],
             )
         )
     return tuple(out)
+
+
+def _does_nothing(model: Fitted) -> bool:
+    """Whether the last effect was fitted, and to values at which it is absent: what its slopes promise cannot be."""
+    own = model.parameters_of(model.model.effects[-1])
+    return not model.looked_at_only and all(model.values[k] == p.neutral for p, k in own)
 
 
 def _shapes(model: Fitted) -> int:

@@ -82,6 +82,7 @@ def laid_down(
         notes = (*notes, along.note)
     else:
         seed = _plant(part, point, math.fmod(angle, 360.0), mesh, reference, fabric, shift)
+        notes = (*notes, *_elsewhere(shift, angle))
     return Start(surface, part, mesh, seed, float(angle), float(pitch), fabric, along, notes)
 
 
@@ -101,6 +102,14 @@ def _plant(
 
     meant = plant(0.0)
     return meant if shift == Shift() else displaced(shift, meant, plant, mesh, len(part.triangles))
+
+
+def _elsewhere(shift: Shift, angle: float) -> tuple[str, ...]:
+    """A note on a ply that is not laid as asked: its heading (degrees) is not the one that is printed."""
+    if shift == Shift():
+        return ()
+    turn, away = f"turned by {shift.dangle:+.3g}° from {angle:g}°", math.hypot(shift.du, shift.dv)
+    return (f"placement: the ply lies {away:.3g} mm from the origin asked for, and {turn}",)
 
 
 def _cuts(surface: Surface) -> tuple[str, ...]:

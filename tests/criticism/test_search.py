@@ -308,3 +308,11 @@ def test_yarns_that_are_all_shorter_are_said_to_be_no_matter_of_tension():
     assert not shortened(found(-0.009, 0.002))
     assert not shortened(found(-0.009, -0.0094, 0.005))  # not for certain
     assert not shortened(())
+
+
+@pytest.mark.parametrize(("value", "looked", "nothing"), [(0.0, False, True), (0.0, True, False), (0.01, False, False)])
+def test_what_was_fitted_to_nothing_explains_nothing(value, looked, nothing):
+    """Its slopes promise something with the other sign: stiffness below 0 was said to explain half of a misfit."""
+    at = np.array([0.5, 0.0, 0.1, value])
+    model = Fitted(Model(("shear-stiffness",)), Fit(at, np.zeros(4), np.zeros((4, 4)), 0.0), looked_at_only=looked)
+    assert search._does_nothing(model) == nothing

@@ -152,6 +152,14 @@ def test_the_net_is_a_smooth_function_of_the_placement():
     assert abs(track - np.polynomial.polynomial.polyval(at, line).T).max() < 0.01
 
 
+def test_a_ply_that_is_laid_elsewhere_says_so():
+    """The heading printed is the one asked for."""
+    (said,) = [note for note in drape(PLANE, "placement:du=3,dv=-4,dangle=-20").notes if "placement" in note]
+    assert "5 mm from the origin asked for" in said
+    assert "turned by -20° from 0°" in said
+    assert not any("placement" in note for note in drape(PLANE, "weave-skew:skew=1").notes)
+
+
 def test_a_seed_displaced_off_the_part_is_refused():
     with pytest.raises(gd.DrapeError, match="moves the seed off the part"):
         drape(PLANE, "placement:du=150")

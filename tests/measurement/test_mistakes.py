@@ -161,6 +161,17 @@ def test_labels_counted_from_another_mark_are_noticed(case):
     assert "all labels are off by a mark (by +1 along u, +0 along v)" in warnings[0]
 
 
+def test_labels_of_which_most_have_no_prediction_are_not_called_off_by_a_mark(case):
+    """A table read from another origin was said to lie within 65 mm instead of inf mm; swapped ones are still found."""
+    net, m = case
+    apart = replace(m, u=m.u + np.where(m.u > 0.0, 200.0, -200.0))  # beyond the net, on both sides
+    assert not np.isfinite(net.interpolate(apart.u, apart.v)[0]).all(axis=1).any()
+    assert check_labels(net, apart) == ()
+    (said,) = check_labels(net, replace(m, u=1000.0 * m.u, v=1000.0 * m.v))
+    assert "where most have none as they are" in said
+    assert "inf" not in said
+
+
 @pytest.mark.parametrize(("unit", "factor"), [("m", 1000.0), ("in", 25.4), ("cm", 10.0)])
 @pytest.mark.parametrize("labelled", [True, False])
 def test_points_in_another_unit_are_refused_and_the_unit_named(case, unit, factor, labelled):
