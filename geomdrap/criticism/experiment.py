@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 KEPT = 12  # surfaces with effects on them that are kept, and corrections of coarse nets
 KEPT_NETS = 3
 ALIKE = 0.3  # of their typical sizes: values differ by less where a net is relaxed from another one
-HARDLY_DIFFERENT = 0.5  # likewise, where what a coarse net gets wrong is the same
+HARDLY_DIFFERENT = 0.5  # likewise: what a coarse net gets wrong is the same, 1 mm of what varies over centimetres
 TOP = 97.0  # percentile of the shear that counts as the largest
 FINE, COARSE = 7000, 900  # nodes of the net, for what costs milliseconds and for what costs seconds
 
