@@ -15,7 +15,18 @@ import numpy as np
 
 from geomdrap.criticism.cleaned import cleaned, outliers_of
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
-from geomdrap.criticism.ended import WORTH, End, at_an_end, chosen, ended, explains_the_rest, leaves, left_over
+from geomdrap.criticism.ended import (
+    WORTH,
+    End,
+    at_an_end,
+    best_of,
+    chosen,
+    ended,
+    explains_the_rest,
+    heard,
+    leaves,
+    left_over,
+)
 from geomdrap.criticism.evidence import Evidence, says_the_same
 from geomdrap.criticism.experiment import Experiment, flatten
 from geomdrap.criticism.final import said_of_coarser
@@ -114,10 +125,19 @@ def search(
         if best is None or len(rounds) == MOST_EFFECTS or locks(experiment, rounds[0]):
             return rounds
         base, scatter = rounds[-1].trial(best)
-        rest = left_over(experiment, base, scatter)
-        if not (leaves(rounds[0], base, WORTH) and rest.doubtful):
+        model, rest = base, left_over(experiment, base, scatter)
+        if _needs_more(rounds, model, rest) and make(best).costly:  # or so says a coarse net
+            rounds[-1] = heard(experiment, rounds[0], rounds[-1], _between(progress, passed + len(rounds)))
+            best, model, rest = best_of(experiment, rounds[-1])
+            base = rounds[-1].trial(best)[0]
+        if not _needs_more(rounds, model, rest):
             return rounds
         certain = rest.structured
+
+
+def _needs_more(rounds: Sequence[Round], model: Fitted, rest: Leftover) -> bool:
+    """Whether a model leaves enough, and perhaps no mere noise, for one more effect to be looked for."""
+    return rest.doubtful and leaves(rounds[0], model, WORTH)
 
 
 def _teller(progress: Progress, passed: int, count: int) -> Callable[[str], None]:
@@ -126,8 +146,13 @@ def _teller(progress: Progress, passed: int, count: int) -> Callable[[str], None
     return lambda name: progress(1.0 - 0.5**passed * (1.0 - 0.5 * next(told) / count), f"trying {name}")
 
 
+def _between(progress: Progress, passed: int) -> Callable[[str], None]:
+    """Likewise for what is fitted on between ``passed`` rounds and the next, if there is one."""
+    return lambda name: progress(1.0 - 0.5**passed, f"refining {name}")
+
+
 def _refining(progress: Progress, passed: int) -> Callable[[str], None]:
-    """Likewise for what is fitted on after ``passed`` rounds."""
+    """Likewise for what is fitted on at the end, after ``passed`` rounds."""
     told = count(passed + 1)
     return lambda name: progress(1.0 - 0.5 ** next(told), f"refining {name}")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -42,13 +43,14 @@ class End(NamedTuple):
 
 def chosen(rounds: Sequence[Round]) -> str | None:
     """The effect that the last round adds, None for none: a further one must explain enough of the first misfit."""
-    found = rivals(rounds[-1].evidence)
+    last = rounds[-1]
+    found = rivals(last.evidence) if last.ends is None else tuple(last.ends)
     if not found:
         return None
     if len(rounds) > 1:
         first = rounds[0].base.fit.chi2 - len(rounds[0].rows)
-        before = rounds[-1].base
-        after = rounds[-1].trial(found[0])[0]
+        before = last.base
+        after = last.trial(found[0])[0]
         if before.fit.chi2 - after.fit.chi2 < WORTH * first:
             return None
     return found[0]
@@ -91,7 +93,7 @@ def _anew(meant: Experiment, experiment: Experiment, model: Fitted, before: Scat
         return before  # on coarse nets it also holds what these get wrong
     rows = np.isfinite(model.fit.residual)
     residuals = Residuals(model.fit.residual[rows], model.fit.slopes[rows])
-    return judge_of(experiment, rows).best_scatter([residuals], [0])[0][0]
+    return judge_of(experiment, rows).best_scatter([residuals], [0], before)[0][0]
 
 
 def _last_word(meant: Experiment, experiment: Experiment, model: Fitted, before: Scatter) -> tuple[Scatter, Leftover]:
@@ -105,27 +107,38 @@ def _unexplained(first: Round, model: Fitted, left: Leftover) -> bool:
     return left.structured and leaves(first, model, UNEXPLAINED)
 
 
-def _heard(
-    meant: Experiment, first: Round, last: Round, done: Callable[[str], None]
-) -> tuple[dict[str, tuple[Experiment, Fitted]], Round]:
-    """As of ``told_apart``; where the best leaves what needs a cause, what coarse nets left behind is heard, too."""
+def heard(meant: Experiment, first: Round, last: Round, done: Callable[[str], None]) -> Round:
+    """The last round as finer nets see it, with its ``ends``: as of ``told_apart``.
+
+    Where the best leaves what needs a cause, what coarse nets left behind is heard, too.
+    """
+    if last.ends is not None:
+        return last
     hearing = contenders(last.evidence)
     ends, seen = told_apart(meant, last, hearing, done)
     best, (experiment, model) = next(iter(ends.items()))
     behind = left_behind(last.evidence, best, hearing)
     if behind and _unexplained(first, model, _last_word(meant, experiment, model, seen.trial(best)[1])[1]):
-        return told_apart(meant, last, (*ends, *behind), done, ends)
-    return ends, seen
+        ends, seen = told_apart(meant, last, (*ends, *behind), done, ends)
+    return replace(seen, ends=ends)
+
+
+def best_of(meant: Experiment, last: Round) -> tuple[str, Fitted, Leftover]:
+    """The best of a round that was heard, fitted to the end, and what it leaves."""
+    assert last.ends is not None
+    best, (experiment, model) = next(iter(last.ends.items()))
+    return best, model, _last_word(meant, experiment, model, last.trial(best)[1])[1]
 
 
 def ended(meant: Experiment, rounds: Sequence[Round], done: Callable[[str], None]) -> End:
     """The end of a search, in an experiment as it was ``meant``; ``done`` is told each effect that is fitted on."""
     names, model, scatter = found_by(rounds)
     alike: tuple[str, ...] = ()
-    ends: dict[str, tuple[Experiment, Fitted]] = {}
+    ends: Mapping[str, tuple[Experiment, Fitted]] = {}
     if names:
         k = len(names) - 1
-        ends, seen = _heard(meant, rounds[0], rounds[k], done)
+        seen = heard(meant, rounds[0], rounds[k], done)
+        ends = seen.ends or {}
         alike, rounds = tuple(ends), [*rounds[:k], seen, *rounds[k + 1 :]]
         names, scatter = [*names[:k], alike[0]], seen.trial(alike[0])[1]
     experiment, model = ends[alike[0]] if alike else final(meant, model, scatter)

@@ -125,10 +125,13 @@ class Judge:
         more = scatter.size**2 * np.diag(covariance) / self.noise[self.shifted] ** 2
         return float(np.sqrt(1.0 + more.sum() / len(self.noise)))
 
-    def best_scatter(self, models: Sequence[Residuals], of: Sequence[int]) -> tuple[list[Scatter], np.ndarray]:
+    def best_scatter(
+        self, models: Sequence[Residuals], of: Sequence[int], near: Scatter | None = None
+    ) -> tuple[list[Scatter], np.ndarray]:
         """The likeliest scatter of each model and its log-likelihood (k,).
 
-        The search climbs for the models ``of``; every scatter that it visits is tried for all of them.
+        The search climbs for the models ``of``, for the first of them from a scatter ``near``; every scatter that it
+        visits is tried for all of them.
         """
         seen: dict[Scatter, np.ndarray] = {}
 
@@ -138,19 +141,25 @@ class Judge:
             return float(seen[scatter][n])
 
         value(NO_SCATTER, 0)
-        for n in of:
-            self._climb(lambda scatter, n=n: value(scatter, n))  # type: ignore[misc]
+        for n, start in zip(of, [near, *[None] * len(of)], strict=False):
+            self._climb(lambda scatter, n=n: value(scatter, n), *self._place_of(start))  # type: ignore[misc]
         visited = list(seen)
         table = np.array([seen[s] for s in visited])
         best = table.argmax(axis=0)
         return [visited[b] for b in best], table.max(axis=0)
 
-    def _climb(self, value: Callable[[Scatter], float]) -> None:
-        """Coordinate search over length, size and smoothness for the greatest value."""
-        length = len(self.lengths) // 2
+    def _place_of(self, scatter: Scatter | None) -> tuple[int, int, Smoothness]:
+        """Where a climb starts: numbers of length and size, and smoothness, like those of a scatter if given."""
+        if scatter is not None and scatter.size > 0.0:
+            length = int(np.argmin(np.abs(np.log(np.array(self.lengths) / scatter.length))))
+            wanted, kind = int(np.argmin(np.abs(np.array(SIZES) * self.unit - scatter.size))), scatter.kind
+        else:
+            length, wanted, kind = len(self.lengths) // 2, START if scatter is None else 0, Smoothness.SMOOTH
         most = largest_scatter(self.lengths[length])
-        size = max(n for n in range(START + 1) if n == 0 or SIZES[n] * self.unit <= most)
-        kind = Smoothness.SMOOTH
+        return length, max(n for n in range(wanted + 1) if n == 0 or SIZES[n] * self.unit <= most), kind
+
+    def _climb(self, value: Callable[[Scatter], float], length: int, size: int, kind: Smoothness) -> None:
+        """Coordinate search over length, size and smoothness, from these, for the greatest value."""
 
         def here(length: int, size: int, kind: Smoothness) -> float:
             s = SIZES[size] * self.unit

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,7 +29,8 @@ class Round:
 
     ``failed`` names effects that could not be tried on this part. ``rows`` (m,) bool are the values that all models
     predict; ``judge`` knows their noise. ``scatter`` holds the likeliest lay-up scatter of the base and of every
-    trial, ``cv_base`` the base's held-out error.
+    trial, ``cv_base`` the base's held-out error. ``ends``: those told apart on finer nets, the best first, fitted to
+    the end, each with its experiment; None before that.
     """
 
     base: Fitted
@@ -40,6 +41,7 @@ class Round:
     judge: Judge
     cv_base: float
     failed: tuple[str, ...]
+    ends: Mapping[str, tuple[Experiment, Fitted]] | None = None
 
     @property
     def closest(self) -> Fitted:
@@ -68,7 +70,8 @@ def try_effects(
     least = min([base.fit.chi2, *(t.fit.chi2 for t in trials)])
     names = [name for name in names if name not in [t.model.effects[-1] for t in trials]]
     turns: Sequence[float] = TURNS
-    for look in _looks(experiment, base, whiten, names, done):
+    near, likely = _likely(experiment, base)
+    for look in _looks(experiment, base, (whiten, likely), names, done):
         done(look.effect)
         trial = add_effect(experiment, whiten, base, look, least, turns)
         if not _predicts(trial):
@@ -89,7 +92,7 @@ def try_effects(
     linear = [Residuals(np.nan_to_num(m.fit.residual[rows]), m.fit.slopes[rows]) for m in models]
     white = np.array([float(((r.residual / judge.noise) ** 2).sum()) for r in linear])
     order = [0, *(1 + np.argsort(white[1:], kind="stable"))][:CLIMB]
-    scatter, likelihood = judge.best_scatter(linear, order)
+    scatter, likelihood = judge.best_scatter(linear, order, near)
     block = blocks_of(experiment.at)[experiment.point_of()[rows]]
     errors = [held_out_error(r.residual, r.slopes, judge.noise, block) for r in linear]
     # shares and held-out errors are of the misfit above noise and the scatter that the best fitted model leaves
@@ -102,19 +105,23 @@ def try_effects(
 
 
 def _looks(
-    experiment: Experiment, base: Fitted, whiten: Whiten, names: Sequence[str], done: Callable[[str], None]
+    experiment: Experiment,
+    base: Fitted,
+    whiten: tuple[Whiten, Whiten],
+    names: Sequence[str],
+    done: Callable[[str], None],
 ) -> Iterator[Look]:
     """Effects in the order in which they are tried: slow ones last, when it is known what they have to match.
 
-    Of these the one that a first look favours comes first; it may spare the others their fits.
+    Of these the one that a first look favours comes first; it may spare the others their fits. ``whiten`` by the
+    noise, and with the likeliest scatter of the base.
     """
-    likely = _likely(experiment, base)
     slow_ones = [name for name in names if slow(name)]
-    yield from (look_at(experiment, whiten, likely, base, name) for name in names if name not in slow_ones)
+    yield from (look_at(experiment, *whiten, base, name) for name in names if name not in slow_ones)
     seen = []
     for name in slow_ones:
         done(name)
-        seen.append(look_at(experiment, whiten, likely, base, name))
+        seen.append(look_at(experiment, *whiten, base, name))
     yield from sorted(seen, key=lambda look: look.seen.after)  # type: ignore[union-attr]
 
 
@@ -123,13 +130,13 @@ def steps_of(names: Sequence[str]) -> int:
     return len(names) + sum(slow(name) for name in names)
 
 
-def _likely(experiment: Experiment, base: Fitted) -> Whiten:
-    """Whitening (of what the base predicts) by its likeliest scatter."""
+def _likely(experiment: Experiment, base: Fitted) -> tuple[Scatter, Whiten]:
+    """The likeliest scatter of the base, and whitening (of what the base predicts) by it."""
     rows = np.isfinite(base.fit.residual)
     judge = judge_of(experiment, rows)
     scatter = judge.best_scatter([Residuals(base.fit.residual[rows], base.fit.slopes[rows])], [0])[0][0]
     whiten = judge.whiten(scatter)
-    return lambda a: whiten(a[rows])
+    return scatter, lambda a: whiten(a[rows])
 
 
 def _predicts(model: Fitted) -> bool:

@@ -43,8 +43,9 @@ def hints_for(
     hints = []
     if verdict == AMBIGUOUS and len(candidates) > 1:
         tried = round_with(rounds, candidates[-2:])
-        first, second = (tried.trial(n)[0] for n in candidates[-2:])
-        hints.append(where_they_differ(experiment, first, second))
+        ends = tried.ends or {}
+        pair = [ends.get(n, (experiment, tried.trial(n)[0])) for n in candidates[-2:]]
+        hints.append(where_they_differ(*pair))
     places = ", ".join(SEEN[c] for c in left.channels) or "everywhere a little"
     if verdict == AMBIGUOUS and left.structured:
         hints.append(f"none of the candidates explains all of it: {left.size:.1f} times the noise is left, {places}")
@@ -120,15 +121,15 @@ def round_with(rounds: Sequence[Round], names: Sequence[str]) -> Round:
     return next(r for r in reversed(rounds) if {t.model.effects[-1] for t in r.trials} >= set(names))
 
 
-def where_they_differ(experiment: Experiment, first: Fitted, second: Fitted) -> str:
-    """What to measure to tell two models apart: the place where they differ most."""
-    nets = [experiment.draped(m.model.built(m.values), experiment.pitches[1]) for m in (first, second)]
+def where_they_differ(*pair: tuple[Experiment, Fitted]) -> str:
+    """What to measure to tell two models, each with its experiment, apart: the place where they differ most."""
+    nets = [e.draped(m.model.built(m.values), e.pitches[1]) for e, m in pair]
     u = np.intersect1d(np.round(nets[0].u, 6), np.round(nets[1].u, 6))
     v = np.intersect1d(np.round(nets[0].v, 6), np.round(nets[1].v, 6))
     grid = [(a.ravel()) for a in np.meshgrid(u, v, indexing="ij")]
     (p, g), (q, h) = (net.interpolate(*grid) for net in nets)
     away = np.linalg.norm(p - q, axis=1)
-    names = " and ".join(m.model.effects[-1] for m in (first, second))
+    names = " and ".join(m.model.effects[-1] for _, m in pair)
     if not np.isfinite(away).any():
         return f"{names} explain the measurement equally well"
     k = int(np.nanargmax(away))

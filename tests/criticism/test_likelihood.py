@@ -84,6 +84,9 @@ def test_no_scatter_that_could_be_tried_is_much_likelier_than_the_one_found(judg
     made = vectors @ (np.sqrt(np.maximum(values, 0.0)) * rng.normal(size=len(values)))
     model = Residuals(made + judge.noise * rng.normal(size=len(made)), np.zeros((len(made), 0)))
     _, found = judge.best_scatter([model], [0])
+    known, again = judge.best_scatter([model], [0], Scatter(size, length, kind))
+    assert again[0] > found[0] - 3.0  # from what is known it comes as far
+    assert known[0].size == pytest.approx(size, rel=0.5)
     every = [Scatter(s * judge.unit, x, k) for s in SIZES[1:] for x in judge.lengths for k in Smoothness]
     allowed = [s for s in every if s.size <= largest_scatter(s.length)]
     assert found[0] > max(judge.log_likelihood(s, [model])[0] for s in allowed) - 3.0

@@ -17,6 +17,7 @@ from geomdrap.criticism.likelihood import NO_SCATTER, Scatter
 from geomdrap.criticism.model import Fitted, Model
 from geomdrap.criticism.search import Round
 
+diagnose = import_module("geomdrap.criticism.diagnose")
 ended = import_module("geomdrap.criticism.ended")
 last = import_module("geomdrap.criticism.final")
 POINTS = 12
@@ -143,6 +144,49 @@ def test_what_coarse_nets_left_behind_is_heard_where_the_best_leaves_structure(m
     monkeypatch.setattr(last, "final", final)
     monkeypatch.setattr(ended, "left_over", lambda *_: SimpleNamespace(structured=True))
     monkeypatch.setattr(ended, "leaves", lambda first, model, share: model.fit.chi2 > 5.0)
-    ends, _ = ended._heard(meant, of, of, told.append)
+    seen = ended.heard(meant, of, of, told.append)
     assert told == ["yarn-bending", "shear-stiffness"][: 1 + heard]
-    assert next(iter(ends)) == told[-1]
+    assert next(iter(seen.ends)) == told[-1]
+    assert ended.heard(meant, of, seen, told.append) is seen  # it was heard
+
+
+@pytest.mark.parametrize(
+    ("effect", "finer", "tried", "refined"),
+    [
+        ("yarn-bending", False, 1, 1),  # the pitch was the doubt
+        ("yarn-bending", True, 2, 1),
+        ("slip", True, 2, 0),  # no net of it is too coarse
+    ],
+)
+def test_a_doubt_that_a_coarse_net_leaves_is_settled_on_a_finer_one_first(
+    monkeypatch, effect, finer, tried, refined
+):
+    """Bent yarns on a dome had a second round, ten seconds long, for what a net of half the pitch did not leave."""
+    meant, rounds, told = experiment((1.0, 8.0)), [], []
+
+    def try_effects(experiment, base, whiten, names, done, known):
+        found = () if rounds else (Evidence(effect, 900.0, 1, 0.0, 0.0, 0.9, 0.5, True),)
+        trials = () if rounds else (fitted(effect),)
+        rows, scatter = np.ones(POINTS, bool), (NO_SCATTER,) * (1 + len(trials))
+        rounds.append(Round(base, trials, found, scatter, rows, None, 1.0, ()))
+        return rounds[-1]
+
+    def final(experiment, model, scatter):
+        return experiment.finer(), replace(model, fit=replace(model.fit, chi2=1.0))
+
+    def left_over(experiment, model, scatter):
+        doubt = finer or experiment is meant
+        return SimpleNamespace(structured=doubt, doubtful=doubt)
+
+    monkeypatch.setattr(last, "final", final)
+    monkeypatch.setattr(diagnose, "fit_placement", lambda *_: fitted())
+    monkeypatch.setattr(diagnose, "try_effects", try_effects)
+    monkeypatch.setattr(diagnose, "locks", lambda *_: False)
+    for module in (ended, diagnose):
+        monkeypatch.setattr(module, "left_over", left_over)
+        monkeypatch.setattr(module, "leaves", lambda *_: True)
+    got = diagnose.search(meant, ["yarn-bending", "slip"], lambda share, text: told.append((share, text)))
+    assert (len(rounds), len(got)) == (tried, tried)
+    assert [text for _, text in told] == [f"refining {effect}"] * refined
+    assert (got[0].ends is not None) == bool(refined)
+    assert all(0.5 <= share < 1.0 for share, _ in told)

@@ -70,10 +70,9 @@ def test_the_slow_effect_that_a_look_favours_is_tried_first(monkeypatch):
         return Look(name, Model((name,)), None, value and Glance(None, None, 9.0, value))
 
     monkeypatch.setattr(search, "look_at", look_at)
-    monkeypatch.setattr(search, "_likely", lambda *_: whiten)
     told = []
     names = ("bridging", "steering", "locking", "shear-stiffness")
-    order = [look.effect for look in search._looks(None, None, whiten, names, told.append)]
+    order = [look.effect for look in search._looks(None, None, (whiten, whiten), names, told.append)]
     assert order == ["steering", "locking", "shear-stiffness", "bridging"]
     assert len(told) + len(order) == search.steps_of(names)
 
