@@ -16,6 +16,7 @@ import numpy as np
 from geomdrap.criticism.cleaned import cleaned, outliers_of
 from geomdrap.criticism.diagnosis import AMBIGUOUS, NONE, PLACEMENT, UNKNOWN, Diagnosis, Step
 from geomdrap.criticism.ended import (
+    UNEXPLAINED,
     WORTH,
     End,
     at_an_end,
@@ -125,7 +126,7 @@ def search(
         if best is None or len(rounds) == MOST_EFFECTS or locks(experiment, rounds[0]):
             return rounds
         base, scatter = rounds[-1].trial(best)
-        model, rest = base, left_over(experiment, base, scatter)
+        model, rest = base, left_over(experiment, base, _lesser(rounds[-1], scatter))
         if _needs_more(rounds, model, rest) and make(best).costly:  # or so says a coarse net
             rounds[-1] = heard(experiment, rounds[0], rounds[-1], _between(progress, passed + len(rounds)))
             best, model, rest = best_of(experiment, rounds[-1])
@@ -135,9 +136,17 @@ def search(
         certain = rest.structured
 
 
+def _lesser(last: Round, scatter: Scatter) -> Scatter:
+    """The lesser of a scatter and what the closest model of a round leaves."""
+    return min((scatter, last.left), key=last.judge.floor)
+
+
 def _needs_more(rounds: Sequence[Round], model: Fitted, rest: Leftover) -> bool:
-    """Whether a model leaves enough, and perhaps no mere noise, for one more effect to be looked for."""
-    return rest.doubtful and leaves(rounds[0], model, WORTH)
+    """Whether a model leaves enough, and perhaps no mere noise, for one more effect to be looked for.
+
+    What would make the verdict ``unknown`` is enough.
+    """
+    return rest.doubtful and leaves(rounds[0], model, UNEXPLAINED if rest.structured else WORTH)
 
 
 def _teller(progress: Progress, passed: int, count: int) -> Callable[[str], None]:

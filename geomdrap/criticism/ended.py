@@ -19,6 +19,7 @@ from geomdrap.criticism.model import Fitted, Model
 from geomdrap.criticism.search import Round, judge_of
 
 WORTH = 0.03  # of the first misfit: what a further effect must explain
+MUCH = 0.7  # of what the model before it leaves: a further one may explain this instead, if it needs a cause
 UNEXPLAINED = 0.015  # of the first misfit: what the final model may leave where structure is in it
 
 
@@ -42,23 +43,31 @@ class End(NamedTuple):
 
 
 def chosen(rounds: Sequence[Round]) -> str | None:
-    """The effect that the last round adds, None for none: a further one must explain enough of the first misfit."""
+    """The effect that the last round adds, None for none: a further one must explain enough.
+
+    That is a good part of the first misfit, or most of what the model before it leaves, if that needs a cause.
+    """
     last = rounds[-1]
     found = rivals(last.evidence) if last.ends is None else tuple(last.ends)
     if not found:
         return None
     if len(rounds) > 1:
         first = rounds[0].base.fit.chi2 - len(rounds[0].rows)
-        before = last.base
-        after = last.trial(found[0])[0]
-        if before.fit.chi2 - after.fit.chi2 < WORTH * first:
+        gain = last.base.fit.chi2 - last.trial(found[0])[0].fit.chi2
+        explains = _explains(last, found[0], MUCH) and leaves(rounds[0], last.base, UNEXPLAINED)
+        if gain < WORTH * first and not explains:
             return None
     return found[0]
 
 
 def explains_the_rest(last: Round, effect: str | None) -> bool:
     """Whether an effect explains nearly all that a round had left: less may be what nets and facets make."""
-    return any(e.name == effect and e.share >= MOST for e in last.evidence)
+    return _explains(last, effect, MOST)
+
+
+def _explains(last: Round, effect: str | None, share: float) -> bool:
+    """Whether an effect explains a share of what a round had left."""
+    return any(e.name == effect and e.share >= share for e in last.evidence)
 
 
 def found_by(rounds: Sequence[Round]) -> tuple[list[str], Fitted, Scatter]:

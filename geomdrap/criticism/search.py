@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -47,6 +48,12 @@ class Round:
     def closest(self) -> Fitted:
         """The model with the least chi-square, whether it is believed or not."""
         return min((self.base, *self.trials), key=lambda model: model.fit.chi2)
+
+    @property
+    def left(self) -> Scatter:
+        """The scatter of the closest model: no more of it is in the ply, whatever other models call scatter."""
+        models = (self.base, *self.trials)
+        return self.scatter[models.index(self.closest)]
 
     def trial(self, effect: str) -> tuple[Fitted, Scatter]:
         """The trial of an effect and its scatter."""
@@ -95,9 +102,10 @@ def try_effects(
     scatter, likelihood = judge.best_scatter(linear, order, near)
     block = blocks_of(experiment.at)[experiment.point_of()[rows]]
     errors = [held_out_error(r.residual, r.slopes, judge.noise, block) for r in linear]
-    # shares and held-out errors are of the misfit above noise and the scatter that the best fitted model leaves
-    best = scatter[max((k for k, m in enumerate(models) if not m.looked_at_only), key=lambda k: likelihood[k])]
-    squares = [judge.square(best, r) for r in linear]
+    # shares are of the misfit above noise and the scatter that the closest model leaves: others call more scatter
+    fitted = [math.inf if m.looked_at_only else w for m, w in zip(models, white, strict=True)]
+    left = scatter[int(np.argmin(fitted))]
+    squares = [judge.square(left, r) for r in linear]
     floor = float(rows.sum())
     spreads = [deviations(judge.whiten(s)(r.slopes)) for s, r in zip(scatter[1:], linear[1:], strict=True)]
     evidence = _weigh(models, likelihood, squares, errors, spreads, floor)
