@@ -126,6 +126,15 @@ def typical_spacing(places: np.ndarray) -> float:
     return float(np.median(distance))
 
 
+def _spacing_of_marks(comparison: Comparison, points: np.ndarray) -> float:
+    """The typical spacing, mm, of the points used (k, 3), repeated readings of one mark counted once."""
+    if not comparison.measurement.labelled:
+        return typical_spacing(points)
+    where = np.column_stack([comparison.matched.u, comparison.matched.v])[comparison.used]
+    _, first = np.unique(np.round(where, 6), axis=0, return_index=True)
+    return typical_spacing(points[first])
+
+
 def _region(comparison: Comparison, rows: np.ndarray, peak: int, score: float) -> Region:
     matched, parts = comparison.matched, comparison.parts[rows]
     x, y, z = comparison.measurement.points[peak].tolist()
@@ -202,7 +211,7 @@ def unmeasured(comparison: Comparison) -> tuple[float, tuple[Gap, ...]]:
 
     surface = comparison.net.surface
     points = comparison.measurement.points[comparison.used]
-    reach = FAR_FROM_POINTS * max(typical_spacing(points), comparison.net.pitch)
+    reach = FAR_FROM_POINTS * max(_spacing_of_marks(comparison, points), comparison.net.pitch)
     center = surface.points[surface.triangles].mean(axis=1)
     size = np.linalg.norm(surface.points[surface.triangles] - center[:, None], axis=2).max(axis=1)
     distance, _ = cKDTree(points).query(center)

@@ -72,8 +72,8 @@ def hints_for(
         hints.append("the table has no shear angles: springback and other effects on shear alone cannot be seen")
     if not experiment.measurement.labelled:
         hints.append(
-            "the table has no u, v: where marks moved cannot be seen, so yarn-extension and other effects that leave "
-            "the shear as it is are not visible; draw a grid on the flat fabric to see them"
+            "the table has no u, v: where marks moved cannot be seen, so yarn-extension and other effects that "
+            "hardly change the shear are seen only where they are large; draw a grid on the flat fabric to see them"
         )
     return tuple(f"{hint}." for hint in hints)
 

@@ -162,7 +162,10 @@ def _lines(comparison: Comparison) -> list[tuple[str, bool]]:
 
     lines = [("Worst:  " + text, False) for text in (region_words(r) for r in worst_regions(comparison))]
     if not lines:
-        lines = [("No region where the residual stands out of the noise.", False)]
+        noises = (comparison.noise_xyz, comparison.noise_shear, comparison.noise_warp, comparison.noise_weft)
+        known = any(noise.sigma is not None for noise in noises)
+        of = "the noise" if known else "what is usual here; the noise is not known"
+        lines = [(f"No region where the residual stands out of {of}.", False)]
     share, _ = unmeasured(comparison)
     if share > 0.02:
         lines.append((f"{100 * share:.0f} % of the part's area has no measured point nearby.", False))

@@ -66,8 +66,9 @@ def figure_of(diagnosis: Diagnosis) -> Any:
 
 
 def _words(diagnosis: Diagnosis) -> tuple[list[str], list[str]]:
-    """The verdict, and what is said of it, in lines."""
+    """The verdict, and what is said of it, in lines: warnings first, as the verdict is no better than the table."""
     more = [
+        *(f"Warning: {warning}" for warning in diagnosis.warnings),
         story.error_sentence(diagnosis),
         story.placement_sentence(diagnosis),
         story.rival_sentence(diagnosis),

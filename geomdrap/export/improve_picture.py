@@ -46,7 +46,7 @@ def _words(figure: Any, improvement: Improvement) -> None:
         figure.text(MARGIN / wide, y / high, line, fontsize=14, fontweight="bold", color=palette.INK, va="top")
         y -= 0.34
     for sentence in (error_sentence(diagnosis), *improvement.notes, *diagnosis.hints):
-        for line in textwrap.wrap(sentence, 84):
+        for line in textwrap.wrap(sentence[0].upper() + sentence[1:], 84):
             figure.text(MARGIN / wide, (y - 0.1) / high, line, fontsize=9.5, color=palette.INK, va="top")
             y -= 0.22
 

@@ -8,10 +8,12 @@ import pytest
 import geomdrap as gd
 from geomdrap.blind import make
 from geomdrap.cli.blind import _read
-from geomdrap.criticism.ended import explains_the_rest
+from geomdrap.criticism.ended import chosen, explains_the_rest
+from geomdrap.criticism.evidence import Evidence
 from geomdrap.criticism.leftover import Leftover, leftover
-from geomdrap.criticism.likelihood import Judge, Residuals, Scatter
+from geomdrap.criticism.likelihood import NO_SCATTER, Judge, Residuals, Scatter
 from geomdrap.criticism.scatter import DEG, scatter_covariance
+from geomdrap.criticism.search import Round
 
 CHANNELS = ("along", "across", "shear")
 SCATTER = Scatter(0.5, 38.0)
@@ -85,3 +87,39 @@ def test_a_second_effect_that_scatter_could_take_for_its_own_is_looked_for(tmp_p
     assert set(found.verdict.split("+")) == {"weave-skew", "yarn-extension"}
     assert found.scatter.size == 0.0
     assert found.steps[-1].error < 1.1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("effects", "seed", "options"),
+    [("weave-skew+springback", 715, {"placement": "right"}), ("slip+springback", 716, {"scatter": 0.3})],
+)
+def test_a_first_effect_is_no_scatter_because_a_second_is_there_too(tmp_path, effects, seed, options):
+    """The placement alone called a millimetre of it scatter: nothing was named, or one of the two for certain."""
+    make(seed, folder=tmp_path, effect=effects, part="hat", **options)
+    found = gd.diagnose(**_read(tmp_path), effects=["weave-skew", "springback", "slip", "steering"])
+    assert set(found.verdict.split("+")) == set(effects.split("+"))
+    assert found.scatter.size < 0.3
+
+
+@pytest.mark.parametrize(
+    ("gain", "share", "before", "wanted"),
+    [(400.0, 0.2, 0.5, True), (100.0, 0.9, 0.02, True), (100.0, 0.5, 0.02, False), (100.0, 0.9, 0.01, False)],
+)
+def test_a_second_effect_explains_a_part_of_all_or_most_of_what_needs_a_cause(gain, share, before, wanted):
+    first = 10_000.0
+
+    def round_of(name, chi2, less):
+        base, trial = (
+            SimpleNamespace(
+                fit=SimpleNamespace(chi2=100.0 + x, residual=np.sqrt((100.0 + x) / 100.0) * np.ones(100)),
+                model=SimpleNamespace(effects=effects),
+            )
+            for x, effects in ((chi2, ("slip",)), (chi2 - less, ("slip", name)))
+        )
+        evidence = (Evidence(name, 900.0, 1, 0.0, 0.0, share, 0.5, True),)
+        rows, judge = np.ones(100, bool), SimpleNamespace(noise=np.ones(100))
+        return Round(base, (trial,), evidence, (NO_SCATTER,) * 2, rows, judge, 1.0, ())
+
+    rounds = [round_of("slip", first, first * (1.0 - before)), round_of("springback", first * before, gain)]
+    assert (chosen(rounds) == "springback") is wanted

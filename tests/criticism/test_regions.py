@@ -128,3 +128,12 @@ def test_a_part_that_was_measured_all_over_has_no_gap(quiet):
     share, gaps = unmeasured(gd.compare(surface, m, **laid))
     assert share < 0.02
     assert gaps == ()
+
+
+def test_marks_read_more_than_once_leave_no_more_unmeasured(quiet):
+    surface, m, laid = quiet
+    some = m.take(np.flatnonzero((m.u < 40.0) & (m.v > -100.0)))
+    thrice = some.take(np.repeat(np.arange(len(some)), 3))
+    shaken = replace(thrice, points=thrice.points + np.random.default_rng(1).normal(0.0, 0.1, thrice.points.shape))
+    once, often = (unmeasured(gd.compare(surface, table, **laid))[0] for table in (some, shaken))
+    assert often == pytest.approx(once, abs=0.01)

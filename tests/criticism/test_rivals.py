@@ -168,7 +168,8 @@ def test_a_doubt_that_a_coarse_net_leaves_is_settled_on_a_finer_one_first(
         found = () if rounds else (Evidence(effect, 900.0, 1, 0.0, 0.0, 0.9, 0.5, True),)
         trials = () if rounds else (fitted(effect),)
         rows, scatter = np.ones(POINTS, bool), (NO_SCATTER,) * (1 + len(trials))
-        rounds.append(Round(base, trials, found, scatter, rows, None, 1.0, ()))
+        judge = SimpleNamespace(floor=lambda scatter: scatter.size)
+        rounds.append(Round(base, trials, found, scatter, rows, judge, 1.0, ()))
         return rounds[-1]
 
     def final(experiment, model, scatter):

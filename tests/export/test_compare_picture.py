@@ -136,7 +136,9 @@ def test_a_few_points_without_labels_or_noise_make_a_page_too(before, tmp_path):
     c = compare_net(before.net, few)
     assert c.scores.chi2_per_dof is None
     draw(c, tmp_path / "few.png")
-    assert "noise not known" in _words(figure_of(c))
+    words = _words(figure_of(c))
+    assert "noise not known" in words
+    assert "stands out of the noise" not in words
 
 
 def test_the_verdict_on_a_trend_follows_its_probability(before):
