@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geomdrap.criticism.evidence import FAMILY, FORETELLS, LEAST_SHARE
+from geomdrap.criticism.evidence import FAMILY, FORETELLS, LEAST_SHARE, MOST
 from geomdrap.criticism.plateau import Plateau, plateau
 
 if TYPE_CHECKING:
@@ -37,13 +37,15 @@ def shear_stops(experiment: Experiment, model: Fitted, scatter: Scatter) -> Plat
 def locks(experiment: Experiment, first: Round) -> bool:
     """Whether the shear stops at an angle, and locking explains a good share of the misfit, or more than all others.
 
-    Yarns that buckled as the ply locked lie where no net foretells, and leave a small share to any of them.
+    Yarns that buckled as the ply locked lie where no net foretells, and leave a small share to any of them. Where
+    another effect explains nearly all, a small share of locking is of what looks like it.
     """
     own = next((e for e in first.evidence if e.name == LOCKING), None)
     if own is None or own.p_family >= FAMILY or not own.in_range:
         return False
     best = own.cv_ratio < FORETELLS and all(e.gain <= own.gain for e in first.evidence)
-    return (own.share >= LEAST_SHARE or best) and first_stop(experiment, first) is not None
+    small = own.share < LEAST_SHARE or (own.share < MOST and any(e.found and e.share >= MOST for e in first.evidence))
+    return (best or not small) and first_stop(experiment, first) is not None
 
 
 def first_stop(experiment: Experiment, first: Round) -> Plateau | None:
