@@ -113,7 +113,11 @@ def misplaced(experiment: Experiment, placement: Sequence[Value]) -> list[str]:
     pairs = zip(placement, marks, strict=True)
     spacing = [m for v, m in pairs if v in far and m and abs(abs(v.value) / m - 1.0) < ABOUT_A_MARK]
     labels = f", and that no label is off by a mark (they are {spacing[0]:g} mm apart)" if spacing else ""
-    return [f"the model lays the ply {where} off its place: check the origin and the heading that were given{labels}"]
+    check = f"check the origin and the heading that were given{labels}"
+    if not experiment.measurement.labelled:
+        check += "; without u, v this is less certain than its interval says, as a placement and an effect can make "
+        check += "up for each other: a few marks with u, v would show"
+    return [f"the model lays the ply {where} off its place: {check}"]
 
 
 def round_with(rounds: Sequence[Round], names: Sequence[str]) -> Round:

@@ -295,8 +295,11 @@ def test_a_ply_at_the_end_of_where_it_is_looked_for_is_not_found(dangle, lost):
     end = SimpleNamespace(names=["locking"], alike=(), unexplained=True, model=model)
     assert _verdict(end) == ("unknown", () if lost else ("locking",))
     placement = [Value("du", 1.0, 0.1, "mm"), Value("dv", 2.0, 0.1, "mm"), Value("dangle", dangle, np.inf, "deg")]
-    bare = SimpleNamespace(measurement=SimpleNamespace(u=None, v=None))
-    assert "dangle" in misplaced(bare, placement)[0]
+    for labelled in (False, True):
+        bare = SimpleNamespace(measurement=SimpleNamespace(u=None, v=None, labelled=labelled))
+        said = misplaced(bare, placement)[0]
+        assert "dangle" in said
+        assert ("less certain" in said) is not labelled  # of a shear-only table du was 12 ± 4 mm where it was 0
 
 
 def test_yarns_that_are_all_shorter_are_said_to_be_no_matter_of_tension():
