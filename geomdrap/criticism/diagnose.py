@@ -55,6 +55,7 @@ MOST_EFFECTS = 2
 STRAIN = "yarn-extension"
 SHIFTED = 0.5  # mm: a seed that lies further off than this is named
 TURNED = 0.4  # degrees: likewise
+SUSPECT = 0.75  # mm of scatter: few lay-ups have more, and what smooth effects leave looks like that
 CERTAIN = 3.0  # standard deviations of the placement
 
 
@@ -126,12 +127,13 @@ def search(
         if best is None or len(rounds) == MOST_EFFECTS or locks(experiment, rounds[0]):
             return rounds
         base, scatter = rounds[-1].trial(best)
-        model, rest = base, left_over(experiment, base, _lesser(rounds[-1], scatter))
-        if _needs_more(rounds, model, rest) and make(best).costly:  # or so says a coarse net
+        scatter = _lesser(rounds[-1], scatter)
+        model, rest = base, left_over(experiment, base, scatter)
+        if _needs_more(rounds, model, rest, scatter) and make(best).costly:  # or so says a coarse net
             rounds[-1] = heard(experiment, rounds[0], rounds[-1], _between(progress, passed + len(rounds)))
             best, model, rest = best_of(experiment, rounds[-1])
-            base = rounds[-1].trial(best)[0]
-        if not _needs_more(rounds, model, rest):
+            base, scatter = rounds[-1].trial(best)
+        if not _needs_more(rounds, model, rest, scatter):
             return rounds
         certain = rest.structured
 
@@ -141,12 +143,13 @@ def _lesser(last: Round, scatter: Scatter) -> Scatter:
     return min((scatter, last.left), key=last.judge.floor)
 
 
-def _needs_more(rounds: Sequence[Round], model: Fitted, rest: Leftover) -> bool:
+def _needs_more(rounds: Sequence[Round], model: Fitted, rest: Leftover, scatter: Scatter) -> bool:
     """Whether a model leaves enough, and perhaps no mere noise, for one more effect to be looked for.
 
-    What would make the verdict ``unknown`` is enough.
+    What would make the verdict ``unknown`` is enough; so large a ``scatter`` may itself be an effect.
     """
-    return rest.doubtful and leaves(rounds[0], model, UNEXPLAINED if rest.structured else WORTH)
+    doubtful = rest.doubtful or scatter.size > SUSPECT
+    return doubtful and leaves(rounds[0], model, UNEXPLAINED if rest.structured else WORTH)
 
 
 def _teller(progress: Progress, passed: int, count: int) -> Callable[[str], None]:

@@ -92,12 +92,16 @@ def test_a_second_effect_that_scatter_could_take_for_its_own_is_looked_for(tmp_p
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("effects", "seed", "options"),
-    [("weave-skew+springback", 715, {"placement": "right"}), ("slip+springback", 716, {"scatter": 0.3})],
+    [
+        ("weave-skew+springback", 715, {"part": "hat", "placement": "right"}),
+        ("slip+springback", 716, {"part": "hat", "scatter": 0.3}),
+        ("yarn-extension+springback", 83, {"part": "bowl", "points": 300}),
+    ],
 )
 def test_a_first_effect_is_no_scatter_because_a_second_is_there_too(tmp_path, effects, seed, options):
     """The placement alone called a millimetre of it scatter: nothing was named, or one of the two for certain."""
-    make(seed, folder=tmp_path, effect=effects, part="hat", **options)
-    found = gd.diagnose(**_read(tmp_path), effects=["weave-skew", "springback", "slip", "steering"])
+    make(seed, folder=tmp_path, effect=effects, **options)
+    found = gd.diagnose(**_read(tmp_path), effects=["weave-skew", "springback", "slip", "yarn-extension"])
     assert set(found.verdict.split("+")) == set(effects.split("+"))
     assert found.scatter.size < 0.3
 
