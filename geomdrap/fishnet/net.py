@@ -65,10 +65,15 @@ class Net:
     effects: tuple[Effect, ...] = field(default=())
     guided: bool = field(default=False)
     moved: np.ndarray | None = field(default=None)
-    balance: Balance | None = field(default=None, repr=False)
-    slid: Balance | None = field(default=None, repr=False)
+    balance: Balance | None = field(default=None)
+    slid: Balance | None = field(default=None)
     notes: tuple[str, ...] = field(default=())
     warnings: tuple[str, ...] = field(default=())
+
+    def __repr__(self) -> str:
+        acted = "".join(f" + {e.name}" for e in self.effects)
+        nodes = int((self.face >= 0).sum())
+        return f"<Net of {nodes:,} nodes, pitch {self.pitch:g} mm, on {self.surface.source!r}{acted}>"
 
     @property
     def status(self) -> np.ndarray:

@@ -82,3 +82,10 @@ def test_in_the_hole_of_a_part_there_is_nothing():
     points, shear = net.interpolate([60.0], [-1.0])
     assert np.isnan(points).all()
     assert np.isnan(shear).all()
+
+
+def test_a_net_says_what_it_is_in_a_line():
+    surface = shapes.sphere_cap(80.0, 60.0, 6.0)
+    net = gd.drape(surface, pitch=8.0, effects=[gd.effects.make("weave-skew", skew=1.0)])
+    nodes = int(np.isfinite(net.points[..., 0]).sum())
+    assert repr(net) == f"<Net of {nodes:,} nodes, pitch 8 mm, on '{surface.source}' + weave-skew>"
