@@ -131,8 +131,8 @@ def search(
         model, rest = base, left_over(experiment, base, scatter)
         if _needs_more(rounds, model, rest, scatter) and make(best).costly:  # or so says a coarse net
             rounds[-1] = heard(experiment, rounds[0], rounds[-1], _between(progress, passed + len(rounds)))
-            best, model, rest = best_of(experiment, rounds[-1])
-            base, scatter = rounds[-1].trial(best)
+            best, model, scatter, rest = best_of(experiment, rounds[-1])
+            base = rounds[-1].trial(best)[0]
         if not _needs_more(rounds, model, rest, scatter):
             return rounds
         certain = rest.structured

@@ -132,11 +132,11 @@ def heard(meant: Experiment, first: Round, last: Round, done: Callable[[str], No
     return replace(seen, ends=ends)
 
 
-def best_of(meant: Experiment, last: Round) -> tuple[str, Fitted, Leftover]:
-    """The best of a round that was heard, fitted to the end, and what it leaves."""
+def best_of(meant: Experiment, last: Round) -> tuple[str, Fitted, Scatter, Leftover]:
+    """The best of a round that was heard, fitted to the end, its scatter, and what it leaves."""
     assert last.ends is not None
     best, (experiment, model) = next(iter(last.ends.items()))
-    return best, model, _last_word(meant, experiment, model, last.trial(best)[1])[1]
+    return best, model, *_last_word(meant, experiment, model, last.trial(best)[1])
 
 
 def ended(meant: Experiment, rounds: Sequence[Round], done: Callable[[str], None]) -> End:
