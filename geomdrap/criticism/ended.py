@@ -99,10 +99,10 @@ def left_over(experiment: Experiment, model: Fitted, scatter: Scatter) -> Leftov
 def _anew(meant: Experiment, experiment: Experiment, model: Fitted, before: Scatter) -> Scatter:
     """The likeliest scatter of a model on nets finer than meant, if there was some ``before``."""
     if before.size == 0.0 or experiment is meant:
-        return before  # on coarse nets it also holds what these get wrong
+        return before  # on coarse nets it also holds what these get wrong, so the search does not start from it
     rows = np.isfinite(model.fit.residual)
     residuals = Residuals(model.fit.residual[rows], model.fit.slopes[rows])
-    return judge_of(experiment, rows).best_scatter([residuals], [0], before)[0][0]
+    return judge_of(experiment, rows).best_scatter([residuals], [0])[0][0]
 
 
 def _last_word(meant: Experiment, experiment: Experiment, model: Fitted, before: Scatter) -> tuple[Scatter, Leftover]:
