@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -47,18 +46,21 @@ class Round:
     @property
     def closest(self) -> Fitted:
         """The model with the least chi-square, whether it is believed or not."""
-        return min((self.base, *self.trials), key=lambda model: model.fit.chi2)
+        return _closest((self.base, *self.trials))
 
     @property
     def left(self) -> Scatter:
         """The scatter of the closest model: no more of it is in the ply, whatever other models call scatter."""
-        models = (self.base, *self.trials)
-        return self.scatter[models.index(self.closest)]
+        return self.scatter[(self.base, *self.trials).index(self.closest)]
 
     def trial(self, effect: str) -> tuple[Fitted, Scatter]:
         """The trial of an effect and its scatter."""
         k = [t.model.effects[-1] for t in self.trials].index(effect)
         return self.trials[k], self.scatter[k + 1]
+
+
+def _closest(models: Sequence[Fitted]) -> Fitted:
+    return min(models, key=lambda model: model.fit.chi2)
 
 
 def try_effects(
@@ -103,8 +105,7 @@ def try_effects(
     block = blocks_of(experiment.at)[experiment.point_of()[rows]]
     errors = [held_out_error(r.residual, r.slopes, judge.noise, block) for r in linear]
     # shares are of the misfit above noise and the scatter that the closest model leaves: others call more scatter
-    fitted = [math.inf if m.looked_at_only else w for m, w in zip(models, white, strict=True)]
-    left = scatter[int(np.argmin(fitted))]
+    left = scatter[models.index(_closest(models))]
     squares = [judge.square(left, r) for r in linear]
     floor = float(rows.sum())
     spreads = [deviations(judge.whiten(s)(r.slopes)) for s, r in zip(scatter[1:], linear[1:], strict=True)]

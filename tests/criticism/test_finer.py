@@ -9,10 +9,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from without_part import POINTS, experiment, fitted
 
 import geomdrap as gd
 from geomdrap.criticism.evidence import Evidence
-from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.fitted_on import doubted_for_facets, doubted_for_pitch, refined, settled
 from geomdrap.criticism.layup import Layup
@@ -25,29 +25,6 @@ from geomdrap.surface import shapes
 diagnose = import_module("geomdrap.criticism.diagnose")  # the package's own name for it is the function
 ended = import_module("geomdrap.criticism.ended")
 last = import_module("geomdrap.criticism.final")
-POINTS = 12
-
-
-def experiment(pitches):
-    """Distances off the tool, without a part."""
-    return Experiment(
-        surface=None,
-        measurement=None,
-        layup=Layup("centroid", 0.0),
-        at=np.random.default_rng(0).uniform(-50.0, 50.0, (POINTS, 2)),
-        frames=np.tile(np.eye(3), (POINTS, 1, 1)),
-        channels=("normal",),
-        mask=np.ones((POINTS, 1), bool),
-        noise=np.ones(POINTS),
-        measured=np.zeros(POINTS),
-        pitches=pitches,
-    )
-
-
-def fitted(*effects):
-    model = Model(effects)
-    return Fitted(model, Fit(model.neutral, np.zeros(POINTS), np.zeros((POINTS, len(model.neutral))), 0.0))
-
 
 @pytest.mark.parametrize(
     ("pitches", "finer"), [((2.0, 8.0), (2.0, 4.0)), ((3.0, 4.0), (3.0, 3.0)), ((4.0, 4.0), (4.0, 4.0))]

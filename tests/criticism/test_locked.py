@@ -52,6 +52,10 @@ def test_shear_that_stops_is_locking_where_that_explains_most_or_more_than_all_e
     assert not locks(*first_round(stopped, 0.05, rival=60.0))
     assert not locks(*first_round(stopped, 0.05, cv_ratio=1.0))
     assert not locks(*first_round(grown, 0.05))
+    experiment, seen = first_round(stopped, 0.26)
+    nearly_all = Evidence("springback", 900.0, 1, 0.0, 0.0, 0.95, 0.5, True)
+    seen.evidence = (*seen.evidence, nearly_all)
+    assert not locks(experiment, seen)
     assert not locks(*first_round(stopped, 0.5, acts=False))  # only looked at, since another effect explains far more
 
 

@@ -8,41 +8,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from without_part import POINTS, experiment, fitted
 
 from geomdrap.criticism.evidence import Evidence
-from geomdrap.criticism.experiment import Experiment
-from geomdrap.criticism.fit import Fit
-from geomdrap.criticism.layup import Layup
 from geomdrap.criticism.likelihood import NO_SCATTER, Scatter
-from geomdrap.criticism.model import Fitted, Model
 from geomdrap.criticism.search import Round
 
 diagnose = import_module("geomdrap.criticism.diagnose")
 ended = import_module("geomdrap.criticism.ended")
 last = import_module("geomdrap.criticism.final")
-POINTS = 12
-
-
-def experiment(pitches):
-    """Distances off the tool, without a part."""
-    return Experiment(
-        surface=None,
-        measurement=None,
-        layup=Layup("centroid", 0.0),
-        at=np.random.default_rng(0).uniform(-50.0, 50.0, (POINTS, 2)),
-        frames=np.tile(np.eye(3), (POINTS, 1, 1)),
-        channels=("normal",),
-        mask=np.ones((POINTS, 1), bool),
-        noise=np.ones(POINTS),
-        measured=np.zeros(POINTS),
-        pitches=pitches,
-    )
-
-
-def fitted(*effects):
-    model = Model(effects)
-    return Fitted(model, Fit(model.neutral, np.zeros(POINTS), np.zeros((POINTS, len(model.neutral))), 0.0))
-
 
 @pytest.mark.parametrize(
     ("behind", "coarse", "left"),
