@@ -27,14 +27,6 @@ ROUNDING = 1.0 + 1e-6  # edges of just these lengths are common, and must be tak
 
 
 @kernel
-def corner_angles(r: np.ndarray) -> tuple[float, float, float]:
-    """Interior angles (radians) of an unfolded face."""
-    first = math.atan2(r[2], r[1])
-    second = math.atan2(r[2], r[0] - r[1])
-    return first, second, math.pi - first - second
-
-
-@kernel
 def vertex_sizes(triangles: np.ndarray, unfolded: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
     """Area (n,) mm² and shortest edge (n,) mm of each vertex."""
     area = np.zeros(n)
@@ -77,13 +69,14 @@ def bends(
     neighbours: np.ndarray,
     neighbour_edge: np.ndarray,
     unfolded: np.ndarray,
+    angles: np.ndarray,
     deficit: np.ndarray,
     reach: float,
 ) -> np.ndarray:
     """Turns (m, 3, 2) in radians for lines that leave face f over edge k: at its start, and the fall to its end.
 
-    ``deficit`` (n,) are the angle deficits of the vertices, ``reach`` is the longest edge in mm along which they are
-    spread.
+    ``angles`` (m, 3) radians of the faces at their corners, ``deficit`` (n,) the angle deficits of the vertices;
+    ``reach`` is the longest edge in mm along which they are spread.
 
     A crossing at share t of the edge, from corner k, turns the line to the left by ``bend[0] - t * bend[1]``.
     """
@@ -93,20 +86,18 @@ def bends(
     for f in range(len(triangles)):
         r = unfolded[f]
         lengths = (r[0], math.hypot(r[1] - r[0], r[2]), math.hypot(r[1], r[2]))
-        angles = corner_angles(r)
         for k in range(3):
             g = neighbours[f, k]
             if g < 0 or lengths[k] > ROUNDING * reach:
                 continue
             a, b = triangles[f, k], triangles[f, (k + 1) % 3]
-            beyond = corner_angles(unfolded[g])
             e = neighbour_edge[f, k]
             share_a = share_b = 0.0
             if lengths[k] <= LONG * ROUNDING * shortest[a] and smooth[a] != 0.0:
-                beside = angles[k] + beyond[(e + 1) % 3]
+                beside = angles[f, k] + angles[g, (e + 1) % 3]
                 share_a = smooth[a] * 0.5 * beside / (2.0 * math.pi - deficit[a])
             if lengths[k] <= LONG * ROUNDING * shortest[b] and smooth[b] != 0.0:
-                beside = angles[(k + 1) % 3] + beyond[e]
+                beside = angles[f, (k + 1) % 3] + angles[g, e]
                 share_b = smooth[b] * 0.5 * beside / (2.0 * math.pi - deficit[b])
             out[f, k, 0] = share_a
             out[f, k, 1] = share_a + share_b

@@ -14,7 +14,7 @@ from geomdrap.surface import defects, lids, topology, unfold
 from geomdrap.surface.cut import Line, cut_along
 from geomdrap.surface.findings import Findings
 from geomdrap.surface.inspection import component_sums, inspect
-from geomdrap.surface.nearest import Nearest, NearestTree
+from geomdrap.surface.nearest import Nearest, NearestTree, nearest_to_one
 from geomdrap.surface.prepare import Prepared, prepare, take_component, turn_over
 from geomdrap.surface.types import Floats, Ints
 from geomdrap.surface.weld import edge_lengths_squared, used_points
@@ -149,20 +149,18 @@ class Surface:
     @cached_property
     def vertex_normals(self) -> Floats:
         """Unit normals at the vertices (n, 3), weighted by angle."""
-        return _frozen(unfold.vertex_normals(self.points, self.triangles, self.normals))[0]
+        count = len(self.points)
+        return _frozen(unfold.vertex_normals(self.triangles, self.normals, self.corner_angles, count))[0]
 
     @cached_property
     def corner_angles(self) -> Floats:
         """Interior angles of the faces at their corners (m, 3) radians."""
-        corners = self.points[self.triangles]
-        to_next, to_last = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
-        sine = np.linalg.norm(np.cross(to_next, to_last), axis=2)
-        return _frozen(np.arctan2(sine, (to_next * to_last).sum(axis=2)))[0]
+        return _frozen(unfold.corner_angles(self.points, self.triangles))[0]
 
     @cached_property
     def deficits(self) -> Floats:
         """Angle deficits at the vertices (n,) radians: 2π less the angles of the faces there; 0 on the rim."""
-        return _frozen(unfold.angle_deficits(self.points, self.triangles, self.neighbours))[0]
+        return _frozen(unfold.angle_deficits(self.triangles, self.neighbours, self.corner_angles, len(self.points)))[0]
 
     @cached_property
     def area(self) -> float:
@@ -227,7 +225,10 @@ class Surface:
 
     def nearest(self, points: Any) -> Nearest:
         """Nearest points of the surface to points (k, 3) mm; exact at any scale."""
-        return self._tree.query(np.asarray(points, dtype=np.float64))
+        queries = np.atleast_2d(np.asarray(points, dtype=np.float64))
+        if len(queries) == 1 and "_tree" not in self.__dict__:
+            return nearest_to_one(self.points, self.triangles, queries)
+        return self._tree.query(queries)
 
     def only_component(self, face: int) -> Surface:
         """The component that contains the face; source_face and vertex_of_input still refer to the input."""

@@ -79,23 +79,32 @@ def _corner(rows, f, k):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def vertex_normals(points, triangles, normals):  # type: ignore[no-untyped-def]
-    """Unit normals (n, 3) at the vertices: the faces' normals weighted by their angles there.
+def corner_angles(points, triangles):  # type: ignore[no-untyped-def]
+    """Interior angles (m, 3) radians of the faces at their corners."""
+    out = np.empty((len(triangles), 3))
+    for f in range(len(triangles)):
+        for k in range(2):
+            a, b, c = triangles[f, k], triangles[f, k + 1], triangles[f, (k + 2) % 3]
+            ux, uy, uz = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
+            vx, vy, vz = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1], points[c, 2] - points[a, 2]
+            nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+            out[f, k] = np.arctan2(np.sqrt(nx * nx + ny * ny + nz * nz), ux * vx + uy * vy + uz * vz)
+        out[f, 2] = np.pi - out[f, 0] - out[f, 1]
+    return out
+
+
+@njit(cache=True)
+def vertex_normals(triangles, normals, angles, n):  # type: ignore[no-untyped-def]
+    """Unit normals (n, 3) at the vertices: the faces' normals weighted by their ``angles`` (m, 3) there.
 
     Source: G. Thürmer, C. Wüthrich, Computing vertex normals from polygonal facets, JGT 3(1), 1998.
     """
-    result = np.zeros((len(points), 3))
+    result = np.zeros((n, 3))
     for f in range(len(triangles)):
         for k in range(3):
-            a, b, c = triangles[f, k], triangles[f, (k + 1) % 3], triangles[f, (k + 2) % 3]
-            uu, uv, vv = 0.0, 0.0, 0.0
             for i in range(3):
-                u, v = points[b, i] - points[a, i], points[c, i] - points[a, i]
-                uu, uv, vv = uu + u * u, uv + u * v, vv + v * v
-            angle = np.arccos(min(1.0, max(-1.0, uv / np.sqrt(uu * vv))))
-            for i in range(3):
-                result[a, i] += angle * normals[f, i]
-    for j in range(len(points)):
+                result[triangles[f, k], i] += angles[f, k] * normals[f, i]
+    for j in range(n):
         length = np.sqrt(result[j, 0] ** 2 + result[j, 1] ** 2 + result[j, 2] ** 2)
         for i in range(3):
             result[j, i] /= max(length, 1e-300)  # zero where opposite normals cancel
@@ -103,19 +112,16 @@ def vertex_normals(points, triangles, normals):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def angle_deficits(points, triangles, neighbours):  # type: ignore[no-untyped-def]
-    """Angle deficits (n,) radians at the vertices: 2π less the sum of the face angles; 0 on the rim."""
-    out = np.full(len(points), 2.0 * np.pi)
-    rim = np.zeros(len(points), np.bool_)
+def angle_deficits(triangles, neighbours, angles, n):  # type: ignore[no-untyped-def]
+    """Angle deficits (n,) radians at the vertices: 2π less the sum of the ``angles`` (m, 3); 0 on the rim."""
+    out = np.full(n, 2.0 * np.pi)
+    rim = np.zeros(n, np.bool_)
     for f in range(len(triangles)):
         for k in range(3):
-            a, b, c = triangles[f, k], triangles[f, (k + 1) % 3], triangles[f, (k + 2) % 3]
-            ux, uy, uz = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
-            vx, vy, vz = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1], points[c, 2] - points[a, 2]
-            nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-            out[a] -= np.arctan2(np.sqrt(nx * nx + ny * ny + nz * nz), ux * vx + uy * vy + uz * vz)
+            a = triangles[f, k]
+            out[a] -= angles[f, k]
             if neighbours[f, k] < 0:
                 rim[a] = True
-                rim[b] = True
+                rim[triangles[f, (k + 1) % 3]] = True
     out[rim] = 0.0
     return out

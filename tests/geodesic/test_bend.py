@@ -15,7 +15,7 @@ def topology(surface):
 
 
 def all_bends(surface, reach=np.inf):
-    return bends(*topology(surface), deficits(surface)[0], reach)
+    return bends(*topology(surface), surface.corner_angles, deficits(surface)[0], reach)
 
 
 def deficits(surface):

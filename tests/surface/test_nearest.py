@@ -49,16 +49,26 @@ def test_a_single_point_may_be_given_flat():
     assert Surface(*bumpy()).nearest([50.0, 50.0, 500.0]).point.shape == (1, 3)
 
 
+@pytest.mark.parametrize("squeezed", [1.0, 0.02])
+def test_points_asked_for_one_at_a_time_agree_with_brute_force(squeezed):
+    points, triangles = bumpy(8, 100.0)
+    points = points * [1.0, squeezed, 1.0]  # long thin faces, too
+    queries = np.random.default_rng(1).uniform(-0.5, 1.5, (40, 3)) * [100.0, 100.0, 30.0]
+    found = [Surface(points, triangles).nearest(query).distance[0] for query in queries]
+    assert np.allclose(found, brute_force(points, triangles, queries), rtol=0, atol=1e-11)
+
+
 def test_queries_that_are_no_points_find_nothing():
     found = Surface(*bumpy()).nearest([[np.nan, 0, 0], [1.0, 2.0, 3.0], [np.inf, 0, 0]])
     assert found.face[0] == found.face[2] == -1
     assert found.face[1] >= 0
     assert np.isnan(found.distance[[0, 2]]).all()
     assert np.isnan(found.point[0]).all()
+    assert Surface(*bumpy()).nearest([np.nan, 0, 0]).face[0] == -1
 
 
 def test_a_surface_that_went_through_a_pickle_still_answers():
     surface = Surface(*bumpy())
-    surface.nearest([[0.0, 0.0, 0.0]])
+    surface.nearest(np.zeros((2, 3)))
     again = pickle.loads(pickle.dumps(surface))
     assert np.array_equal(again.nearest([[3.0, 4.0, 50.0]]).point, surface.nearest([[3.0, 4.0, 50.0]]).point)
