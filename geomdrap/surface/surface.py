@@ -160,7 +160,8 @@ class Surface:
     @cached_property
     def deficits(self) -> Floats:
         """Angle deficits at the vertices (n,) radians: 2π less the angles of the faces there; 0 on the rim."""
-        return _frozen(unfold.angle_deficits(self.triangles, self.neighbours, self.corner_angles, len(self.points)))[0]
+        count = len(self.points)
+        return _frozen(unfold.angle_deficits(self.triangles, self.neighbours, self.corner_angles, count))[0]
 
     @cached_property
     def area(self) -> float:
