@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from geomdrap.fishnet.follow_surface import nearest_from
+
 if TYPE_CHECKING:
     from geomdrap.fishnet.net import Net
 
@@ -40,8 +42,18 @@ def at_fabric_coordinates(net: Net, u: np.ndarray, v: np.ndarray) -> tuple[np.nd
     shear = np.full(len(places.ok), np.nan)
     if places.ok.any():
         shear[places.ok] = places.mean(net.shear)
-        points[places.ok] = net.surface.nearest(places.mean(net.points)).point
+        points[places.ok] = _on_part(net, places)
     return points, shear
+
+
+def _on_part(net: Net, places: _Places) -> np.ndarray:
+    """The nearest points (k, 3) of the part to bilinear means, looked for from each corner of their cells."""
+    part, means = net.surface, places.mean(net.points)
+    mesh = (part.points, part.triangles, part.neighbours, part.neighbour_edge)
+    corners = [(places.i + di, places.j + dj) for di in (0, 1) for dj in (0, 1)]
+    found = np.array([nearest_from(*mesh, means, net.face[corner])[0] for corner in corners])
+    nearest = np.linalg.norm(found - means, axis=2).argmin(axis=0)
+    return np.asarray(found[nearest, np.arange(len(means))])
 
 
 def directions_at(net: Net, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

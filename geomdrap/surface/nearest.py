@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numba import njit
 
 from geomdrap.surface.types import Floats, Ints
-from geomdrap.surface.weld import edge_lengths_squared
 
 
 @dataclass(frozen=True)
@@ -56,13 +56,30 @@ class NearestTree:
 
 
 def nearest_to_one(points: Floats, triangles: Ints, query: Floats) -> Nearest:
-    """The nearest point to one query (1, 3), by a tree of the faces about it only: a whole one takes far longer.
-
-    The nearest face has a corner that is further off than the nearest vertex by no more than its longest edge.
-    """
-    distance = np.linalg.norm(points - query, axis=1)
-    longest = float(np.sqrt(edge_lengths_squared(points, triangles).max()))
-    near = distance <= distance.min() + longest  # none where the query is not finite
-    some = np.flatnonzero(near[triangles].any(axis=1))
+    """The nearest point to one query (1, 3), by a tree of the faces about it only: a whole one takes far longer."""
+    some = faces_about(points, triangles, query[0])
     found = NearestTree(points, triangles[some]).query(query)
     return Nearest(some[found.face], found.point, found.distance) if len(some) else found
+
+
+@njit(cache=True)
+def faces_about(points, triangles, query):  # type: ignore[no-untyped-def]
+    """Numbers (k,) of the faces that may be nearest to a query (3,): none where it is not finite.
+
+    Their nearest corner is further off than the nearest vertex by no more than their longest edge.
+    """
+    away = np.empty(len(points))
+    for n in range(len(points)):
+        x, y, z = points[n, 0] - query[0], points[n, 1] - query[1], points[n, 2] - query[2]
+        away[n] = np.sqrt(x * x + y * y + z * z)
+    least = away.min()
+    near = np.zeros(len(triangles), np.bool_)
+    for f in range(len(triangles)):
+        longest = 0.0
+        for k in range(3):
+            a, b = triangles[f, k], triangles[f, (k + 1) % 3]
+            x, y, z = points[a, 0] - points[b, 0], points[a, 1] - points[b, 1], points[a, 2] - points[b, 2]
+            longest = max(longest, np.sqrt(x * x + y * y + z * z))
+        a, b, c = triangles[f, 0], triangles[f, 1], triangles[f, 2]
+        near[f] = min(away[a], away[b], away[c]) <= least + longest
+    return np.flatnonzero(near)
