@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geomdrap.measurement.local import neighbours
+from geomdrap.surface.findings import count
 
 if TYPE_CHECKING:
     from geomdrap.criticism.comparison import Comparison
@@ -109,10 +110,10 @@ def _usual(values: np.ndarray) -> float:
 def _averaged(values: np.ndarray, near: np.ndarray) -> np.ndarray:
     """Length of the mean of values (n, k) over neighbours ``near`` (n, m), and the same in its own sigmas: (2, n)."""
     known = np.isfinite(values).all(axis=1)
-    count = known[near].sum(axis=1)
-    mean = np.where(known[:, None], values, 0.0)[near].sum(axis=1) / np.maximum(count, 1)[:, None]
+    many = known[near].sum(axis=1)
+    mean = np.where(known[:, None], values, 0.0)[near].sum(axis=1) / np.maximum(many, 1)[:, None]
     level = np.linalg.norm(mean, axis=1)
-    return np.stack([level, level * np.sqrt(count)])
+    return np.stack([level, level * np.sqrt(many)])
 
 
 def typical_spacing(places: np.ndarray) -> float:
@@ -173,7 +174,7 @@ def region_words(region: Region) -> str:
         along += f"; yarns {region.yarn_angle:.0f}° apart"
     angles = {"shear": region.shear, "warp": region.warp_turn, "weft": region.weft_turn}
     more = [f"; {name} {round(angle, 1) + 0.0:+.1f}°" for name, angle in angles.items() if angle is not None]
-    return f"{region.name}: {region.size:.2f} mm ({along}){''.join(more)}; {region.n} points about ({at})"
+    return f"{region.name}: {region.size:.2f} mm ({along}){''.join(more)}; {count(region.n, 'point')} about ({at})"
 
 
 def name_of_place(comparison: Comparison, row: int) -> str:

@@ -5,6 +5,7 @@ On a coarse net a model of another effect may do as well, for what it makes up o
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
@@ -14,7 +15,7 @@ import numpy as np
 from geomdrap.criticism.evidence import MOST, RIVAL_SHARE, Evidence, rivals
 from geomdrap.criticism.experiment import Experiment, restless
 from geomdrap.criticism.fitted_on import doubted_for_facets, doubted_for_pitch, refined, settled
-from geomdrap.criticism.likelihood import Scatter, is_noise
+from geomdrap.criticism.likelihood import Scatter
 from geomdrap.criticism.model import Fitted, relaxes
 from geomdrap.criticism.search import Round, judge_of
 from geomdrap.effects import make
@@ -117,13 +118,15 @@ def told_apart(
 def _is_enough(experiment: Experiment, finer: Experiment, model: Fitted, scatter: Scatter) -> bool:
     """Whether a model leaves but noise on nets finer than those of the experiment: more of it would say no more.
 
-    Under the ``scatter`` that more of it leaves: its own may hide what it lacks.
+    Under the ``scatter`` that more of it leaves, since its own may hide what it lacks; and by one standard deviation,
+    since three of them have room for a parameter.
     """
-    rows = np.isfinite(model.fit.residual)
-    if finer is experiment or not is_noise(model.fit.chi2, len(rows)):
+    if finer is experiment:
         return False
+    rows = np.isfinite(model.fit.residual)
     white = judge_of(experiment, rows).whiten(scatter)(model.fit.residual[rows])
-    return is_noise(float((white**2).sum()), int(rows.sum()))
+    count = int(rows.sum())
+    return float((white**2).sum()) < count + math.sqrt(2.0 * count)
 
 
 def _no_better(evidence: Sequence[Evidence], names: Sequence[str]) -> tuple[Evidence, ...]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from geomdrap.errors import MeasurementError
+from geomdrap.surface.findings import count
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +81,6 @@ def require_values(measurement: Measurement, parameters: int, purpose: str) -> N
         values += int(np.isfinite(measurement.shear).sum())
     if values <= parameters or len(measurement) == 0:
         raise MeasurementError(
-            f"{measurement.source} holds {len(measurement)} points with {values} measured values, too few for "
-            f"{purpose}, which has {parameters} unknowns: measure more points"
+            f"{measurement.source} holds {count(len(measurement), 'point')} with {count(values, 'measured value')}, "
+            f"too few for {purpose}, which has {parameters} unknowns: measure more points"
         )
