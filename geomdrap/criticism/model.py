@@ -27,6 +27,7 @@ LEAST = 0.01  # of its typical size: the least value of what acts at once
 FEW_STEPS = 7  # of a fit whose every drape is costly
 CREEP = 2e-3  # of its chi-square, likewise: steps that gain less do not make it another one
 PROMISE, LEAST_PROMISE = 0.02, 4.0  # of the misfit, and of chi-square: less is not worth a fit
+SURELY = 0.5  # of that promise: what rough slopes foresee less of is not worth finer ones
 NEARLY = 0.02  # of the misfit: a model that leaves less, and little beside the noise, has explained nearly all of it
 HOPELESS = 0.5  # of the way from the best model back to the base
 HALF, MOSTLY = 0.5, 0.1  # of the misfit: what the best model leaves of it
@@ -240,7 +241,13 @@ def _begun(experiment: Experiment, whiten: Whiten, base: Fitted, look: Look, tur
     What the base already has keeps its slopes; the fit mends them where they mislead it.
     """
     model, predict = look.model, look.predict
-    start = start_values(experiment, predict, whiten, base, look.effect, look.seen, turns)
+    begun = start_values(experiment, predict, whiten, base, look.effect, look.seen, turns)
+    if begun.slopes is not None:
+        both = np.hstack([base.fit.slopes, begun.slopes])
+        if not _promises(whiten, base, base.fit.residual, both, -math.inf, HOPELESS, SURELY):
+            neutral = np.array([p.neutral for p in make(look.effect).parameters])
+            return Fitted(model, replace(base.fit, values=np.append(base.values, neutral), slopes=both))
+    start = begun.values
     own = np.arange(len(base.values), len(start))
     slopes = take_slopes(predict, start, predict(start), model.steps, *model.bounds, own, predict.beside)
     slopes[:, : len(base.values)] = base.fit.slopes
@@ -285,18 +292,24 @@ def _not_fitted(model: Model, base: Fitted, seen: Glance) -> Fitted:
 
 
 def _promises(
-    whiten: Whiten, base: Fitted, residual: np.ndarray, slopes: np.ndarray, least: float, far: float
+    whiten: Whiten,
+    base: Fitted,
+    residual: np.ndarray,
+    slopes: np.ndarray,
+    least: float,
+    far: float,
+    part: float = 1.0,
 ) -> bool:
     """Whether a fit could gain enough to be worth its drapes, by what its slopes promise.
 
     Slopes promise too little where the model is curved: only what is ``far`` from the chi-square ``least`` of the
-    best is given up.
+    best is given up. ``part`` of what is asked for may do.
     """
     before = square_beside(whiten(np.nan_to_num(base.fit.residual)), whiten(base.fit.slopes))
     after = square_beside(whiten(np.nan_to_num(residual)), whiten(slopes))
     if _hopeless(whiten, base, after, least, far):
         return False
-    return before - after > max(PROMISE * max(before - len(residual), 0.0), LEAST_PROMISE)
+    return before - after > part * max(PROMISE * max(before - len(residual), 0.0), LEAST_PROMISE)
 
 
 def _hopeless(whiten: Whiten, base: Fitted, after: float, least: float, far: float) -> bool:

@@ -41,6 +41,14 @@ LEAST_GAIN = 4.0  # of chi-square under the likely scatter: less is not looked i
 
 
 @dataclass(frozen=True, eq=False)
+class Start:
+    """Values (p,) of the base and a new effect; ``slopes`` (m, k) of the effect, where a linear fit led to them."""
+
+    values: np.ndarray
+    slopes: np.ndarray | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Glance:
     """One look at an effect: the best of a few ``values`` of its parameters and their ``signature`` (m,).
 
@@ -125,8 +133,8 @@ def start_values(
     effect: str,
     seen: Glance | None = None,
     turns: Sequence[float] = TURNS,
-) -> np.ndarray:
-    """Values to begin with: the best of a few probes of the new effect; ``seen``: what one look at it showed.
+) -> Start:
+    """Where to begin: the best of a few probes of the new effect; ``seen``: what one look at it showed.
 
     ``turns`` are headings, degrees, at which nets that turn as a whole are tried.
     """
@@ -138,10 +146,12 @@ def start_values(
     acting = [k for k, q in enumerate(own) if sizes[k] > NOTHING and q.typical != q.neutral]
     if len(acting) == len(own) and (len(own) > 1 or own[0].low < own[0].neutral < own[0].high):
         # both signs, a slope at nothing: the linear fit is the start
-        straight = probe.straight(own, alone)
+        slopes = np.column_stack([s / (q.typical - q.neutral) for s, q in zip(alone, own, strict=True)])
+        straight = probe.straight(own, slopes)
         if seen is None or not (kind.costly and is_astray(base)):
-            return np.append(*straight)
-        return _best_start(experiment, predict, whiten, base, [straight, *_turned(base, seen.values, turns)])
+            return Start(np.append(*straight), slopes)
+        turned = _turned(base, seen.values, turns)
+        return Start(_best_start(experiment, predict, whiten, base, [straight, *turned]))
     if len(own) == 1:
         best = probe.narrowed(own[0], experiment.top_shear, seen, 1 if kind.costly else HALVINGS)
     else:
@@ -149,7 +159,7 @@ def start_values(
     starts = [(base.values, best), (as_meant(base), best)]
     if kind.acts_at_once and not is_noise(base.fit.chi2, len(experiment.measured)):
         starts += _turned(base, np.array([q.typical for q in own]), turns)
-    return _best_start(experiment, predict, whiten, base, starts)
+    return Start(_best_start(experiment, predict, whiten, base, starts))
 
 
 class _Probe:
@@ -171,9 +181,8 @@ class _Probe:
         """The chi-square that values (k,) of the effect leave."""
         return square_beside(self.whiten(self.residual - self.signature(values)), self.shifts)
 
-    def straight(self, own: Sequence[Parameter], alone: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """Values of the base and of the effect that fit best, were its signatures ``alone`` linear."""
-        slopes = np.column_stack([s / (q.typical - q.neutral) for s, q in zip(alone, own, strict=True)])
+    def straight(self, own: Sequence[Parameter], slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Values of the base and of the effect that fit best, were it linear with these slopes (m, k)."""
         columns = np.column_stack([self.shifts, self.whiten(slopes)])
         step = np.linalg.lstsq(columns, self.whiten(self.residual), rcond=1e-9)[0]
         (low, high), p = self.base.model.bounds, len(self.base.values)

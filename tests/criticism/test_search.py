@@ -15,7 +15,7 @@ from geomdrap.criticism.ended import at_an_end
 from geomdrap.criticism.experiment import Experiment
 from geomdrap.criticism.fit import Fit
 from geomdrap.criticism.fitted_on import again, further
-from geomdrap.criticism.model import Fitted, Look, Model, Predictor, add_effect
+from geomdrap.criticism.model import Fitted, Look, Model, Predictor, _begun, add_effect
 from geomdrap.criticism.start import Glance, glance, start_values
 from geomdrap.criticism.words import misplaced, shortened
 from geomdrap.measurement.outliers import Outlier
@@ -57,7 +57,7 @@ def test_rounding_is_no_action_of_a_parameter_that_is_neutral_where_it_is_typica
         return PLACES @ v[:3] + v[3] * shape + 1e-4 * rounding
 
     experiment = SimpleNamespace(measured=measured, top_shear=30.0)
-    start = start_values(experiment, predict, whiten, base_at((0.0, 0.0, 0.0), measured), "crossing-slip")
+    start = start_values(experiment, predict, whiten, base_at((0.0, 0.0, 0.0), measured), "crossing-slip").values
     assert start[3] == pytest.approx(0.3, abs=0.01)
     assert np.isfinite(start).all()
 
@@ -236,7 +236,7 @@ def test_a_two_sided_costly_effect_is_looked_for_at_other_headings_if_the_base_w
 
     experiment = SimpleNamespace(measured=measured, top_shear=30.0)
     seen = Glance(np.array([0.2]), shape, 9.0, 1.0)
-    start = start_values(experiment, predict, whiten, base_at((astray, 0.0, 0.0), measured), "shear-asymmetry", seen)
+    start = start_values(experiment, predict, whiten, base_at((astray, 0.0, 0.0), measured), "shear-asymmetry", seen).values
     assert ({-16.0, 8.0} <= set(headings)) == looked
     if looked:
         np.testing.assert_allclose(start, [0.0, 0.0, 8.0, 0.2], atol=0.5)
@@ -283,8 +283,29 @@ def test_a_linear_start_keeps_to_what_the_placement_can_be():
         return PLACES @ v[:3] + v[3] * AT[:, 0] ** 2 + v[4] * AT[:, 1] ** 2
 
     experiment = SimpleNamespace(measured=measured, top_shear=30.0)
-    start = start_values(experiment, predict, whiten, base_at((0.0, 0.0, 0.0), measured), "yarn-extension")
+    start = start_values(experiment, predict, whiten, base_at((0.0, 0.0, 0.0), measured), "yarn-extension").values
     assert start[2] == 45.0
+
+
+@pytest.mark.parametrize(("size", "drapes"), [(1e-3, 2), (1.0, 5)])
+def test_finer_slopes_are_taken_only_of_what_rough_ones_promise(size, drapes):
+    """On top of what is costly each slope is a relaxed net: of effects that explain nothing two are enough."""
+    measured = size * AT[:, 0] ** 2
+    asked = []
+
+    def predict(v):
+        asked.append(tuple(v))
+        return PLACES @ v[:3] + 100.0 * v[3] * AT[:, 0] ** 2 + 100.0 * v[4] * AT[:, 1] ** 2
+
+    experiment = SimpleNamespace(measured=measured, top_shear=30.0)
+    predict.beside = lambda values, step: None
+    base = base_at((0.0, 0.0, 0.0), measured)
+    begun = _begun(experiment, whiten, base, Look("yarn-extension", Model(("yarn-extension",)), predict), (0.0,))
+    assert len(set(asked)) == drapes
+    if drapes == 2:
+        np.testing.assert_array_equal(begun.values, np.zeros(5))
+        np.testing.assert_allclose(begun.fit.slopes[:, 3], 100.0 * AT[:, 0] ** 2)
+        assert begun.fit.chi2 == base.fit.chi2
 
 
 @pytest.mark.parametrize(("dangle", "lost"), [(44.0, False), (45.0, True), (-45.0, True)])
