@@ -245,10 +245,7 @@ def _steps(experiment: Experiment, rounds: Sequence[Round], names: Sequence[str]
 
 def _floor(experiment: Experiment, scatter: Scatter) -> float:
     """Error over the noise of a model that is right: the noise, and the scatter that no model foretells."""
-    if scatter.size == 0.0:
-        return 1.0
-    judge = judge_of(experiment, np.ones(len(experiment.noise), bool))
-    return judge.floor(scatter)
+    return judge_of(experiment, np.ones(len(experiment.noise), bool)).floor(scatter)
 
 
 def _confidence(verdict: str, rounds: Sequence[Round], names: Sequence[str], left: Leftover) -> float:

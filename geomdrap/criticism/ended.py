@@ -10,7 +10,7 @@ import numpy as np
 
 from geomdrap.criticism.evidence import MOST, alike_in_what_they_leave, rivals
 from geomdrap.criticism.experiment import Experiment
-from geomdrap.criticism.final import contenders, final, left_behind, told_apart
+from geomdrap.criticism.final import contenders, final, left_behind, likeliest_scatter, told_apart
 from geomdrap.criticism.jackknife import widened
 from geomdrap.criticism.leftover import Leftover, leftover
 from geomdrap.criticism.likelihood import Residuals, Scatter
@@ -84,8 +84,9 @@ def leaves(first: Round, model: Fitted, share: float) -> bool:
 
     A little is what facets, the pitch and other definitions of the same effect make.
     """
-    noise = first.judge.noise
-    before, after = (float(np.sum((m.fit.residual[first.rows] / noise) ** 2 - 1.0)) for m in (first.base, model))
+    white = [m.fit.residual[first.rows] / first.judge.noise for m in (first.base, model)]
+    both = np.isfinite(white).all(axis=0)  # finer nets may reach less far
+    before, after = (float(np.sum(w[both] ** 2 - 1.0)) for w in white)
     return not model.model.effects or not after < share * before
 
 
@@ -100,9 +101,7 @@ def _anew(meant: Experiment, experiment: Experiment, model: Fitted, before: Scat
     """The likeliest scatter of a model on nets finer than meant, if there was some ``before``."""
     if before.size == 0.0 or experiment is meant:
         return before  # on coarse nets it also holds what these get wrong, so the search does not start from it
-    rows = np.isfinite(model.fit.residual)
-    residuals = Residuals(model.fit.residual[rows], model.fit.slopes[rows])
-    return judge_of(experiment, rows).best_scatter([residuals], [0])[0][0]
+    return likeliest_scatter(experiment, model)
 
 
 def _last_word(meant: Experiment, experiment: Experiment, model: Fitted, before: Scatter) -> tuple[Scatter, Leftover]:

@@ -15,7 +15,7 @@ import numpy as np
 from geomdrap.criticism.evidence import MOST, RIVAL_SHARE, Evidence, rivals
 from geomdrap.criticism.experiment import Experiment, restless
 from geomdrap.criticism.fitted_on import doubted_for_facets, doubted_for_pitch, refined, settled
-from geomdrap.criticism.likelihood import Scatter
+from geomdrap.criticism.likelihood import Residuals, Scatter
 from geomdrap.criticism.model import Fitted, relaxes
 from geomdrap.criticism.search import Round, judge_of
 from geomdrap.effects import make
@@ -118,15 +118,25 @@ def told_apart(
 def _is_enough(experiment: Experiment, finer: Experiment, model: Fitted, scatter: Scatter) -> bool:
     """Whether a model leaves but noise on nets finer than those of the experiment: more of it would say no more.
 
-    Under the ``scatter`` that more of it leaves, since its own may hide what it lacks; and by one standard deviation,
-    since three of them have room for a parameter.
+    Under the ``scatter`` that more of it leaves on coarse nets, or its own if that is less: the larger one may hide
+    what it lacks. And by one standard deviation, since three of them have room for a parameter.
     """
     if finer is experiment:
         return False
     rows = np.isfinite(model.fit.residual)
-    white = judge_of(experiment, rows).whiten(scatter)(model.fit.residual[rows])
+    judge = judge_of(finer, rows)
+    if scatter.size > 0.0:
+        scatter = min((scatter, likeliest_scatter(finer, model)), key=judge.floor)
+    white = judge.whiten(scatter)(model.fit.residual[rows])
     count = int(rows.sum())
     return float((white**2).sum()) < count + math.sqrt(2.0 * count)
+
+
+def likeliest_scatter(experiment: Experiment, model: Fitted) -> Scatter:
+    """The likeliest lay-up scatter of a model alone."""
+    rows = np.isfinite(model.fit.residual)
+    residuals = Residuals(model.fit.residual[rows], model.fit.slopes[rows])
+    return judge_of(experiment, rows).best_scatter([residuals], [0])[0][0]
 
 
 def _no_better(evidence: Sequence[Evidence], names: Sequence[str]) -> tuple[Evidence, ...]:

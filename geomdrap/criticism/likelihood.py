@@ -121,6 +121,8 @@ class Judge:
 
     def floor(self, scatter: Scatter) -> float:
         """Root mean square over the noise of what noise and scatter leave to a perfect model."""
+        if scatter.size == 0.0:
+            return 1.0
         covariance = self._covariance(scatter.length, scatter.kind)
         more = scatter.size**2 * np.diag(covariance) / self.noise[self.shifted] ** 2
         return float(np.sqrt(1.0 + more.sum() / len(self.noise)))

@@ -46,7 +46,8 @@ class Round:
     @property
     def closest(self) -> Fitted:
         """The model with the least chi-square, whether it is believed or not."""
-        return _closest((self.base, *self.trials))
+        models = (self.base, *self.trials)
+        return models[int(np.argmin(_squares(models, self.rows, self.judge.noise)))]
 
     @property
     def left(self) -> Scatter:
@@ -59,8 +60,9 @@ class Round:
         return self.trials[k], self.scatter[k + 1]
 
 
-def _closest(models: Sequence[Fitted]) -> Fitted:
-    return min(models, key=lambda model: model.fit.chi2)
+def _squares(models: Sequence[Fitted], rows: np.ndarray, noise: np.ndarray) -> np.ndarray:
+    """Chi-squares (k,) of models on the ``rows`` (m,) bool that all of them predict, of which this is the noise."""
+    return np.array([float(((m.fit.residual[rows] / noise) ** 2).sum()) for m in models])
 
 
 def try_effects(
@@ -99,13 +101,13 @@ def try_effects(
     rows = np.all([np.isfinite(m.fit.residual) for m in models], axis=0)
     judge = judge_of(experiment, rows)
     linear = [Residuals(np.nan_to_num(m.fit.residual[rows]), m.fit.slopes[rows]) for m in models]
-    white = np.array([float(((r.residual / judge.noise) ** 2).sum()) for r in linear])
+    white = _squares(models, rows, judge.noise)
     order = [0, *(1 + np.argsort(white[1:], kind="stable"))][:CLIMB]
     scatter, likelihood = judge.best_scatter(linear, order, near)
     block = blocks_of(experiment.at)[experiment.point_of()[rows]]
     errors = [held_out_error(r.residual, r.slopes, judge.noise, block) for r in linear]
     # shares are of the misfit above noise and the scatter that the closest model leaves: others call more scatter
-    left = scatter[models.index(_closest(models))]
+    left = scatter[int(white.argmin())]
     squares = [judge.square(left, r) for r in linear]
     floor = float(rows.sum())
     spreads = [deviations(judge.whiten(s)(r.slopes)) for s, r in zip(scatter[1:], linear[1:], strict=True)]

@@ -86,7 +86,7 @@ class Effect:
         return fabric
 
     def on_net(self, net: Net) -> Net:
-        """The net as it really ends up."""
+        """The net as it really ends up. Where its points move to other facets, ``face`` must follow them."""
         return net
 
     def beside(self, near: Net) -> Net | None:

@@ -10,6 +10,8 @@ from numba import njit
 
 from geomdrap.surface.types import Floats, Ints
 
+ON_SIDE = 1e-9  # share of a face: a point that has less of a corner lies on the side across from it
+
 
 @dataclass(frozen=True)
 class Nearest:
@@ -57,14 +59,35 @@ class NearestTree:
 
 def nearest_to_one(points: Floats, triangles: Ints, query: Floats) -> Nearest:
     """The nearest point to one query (1, 3), by a tree of the faces about it only: a whole one takes far longer."""
-    some = faces_about(points, triangles, query[0])
+    some = faces_about(points, triangles, query[0]) if np.isfinite(query).all() else np.zeros(0, np.int64)
+    if len(some) == 0:
+        return Nearest(np.array([-1]), np.full((1, 3), np.nan), np.array([np.nan]))
     found = NearestTree(points, triangles[some]).query(query)
-    return Nearest(some[found.face], found.point, found.distance) if len(some) else found
+    return Nearest(some[found.face], found.point, found.distance)
+
+
+def of_lowest_number(found: Nearest, points: Floats, triangles: Ints) -> Nearest:
+    """A point found (1, 3) on the face of the lowest number of those that hold it.
+
+    On a side or in a corner trees choose by how they were made, and the same origin had another heading.
+    """
+    face = triangles[found.face[0]]
+    if found.face[0] < 0:
+        return found
+    legs = points[face] - found.point[0]
+    share = np.array([np.linalg.norm(np.cross(legs[(k + 1) % 3], legs[(k + 2) % 3])) for k in range(3)])
+    held = np.ones(len(triangles), np.bool_)
+    if (share > ON_SIDE * share.sum()).all():
+        return found
+    for vertex in face[share > ON_SIDE * share.sum()]:
+        there = (points == points[vertex]).all(axis=1)  # both sides of a cut
+        held &= there[triangles].any(axis=1)
+    return Nearest(np.flatnonzero(held)[:1], found.point, found.distance)
 
 
 @njit(cache=True)
 def faces_about(points, triangles, query):  # type: ignore[no-untyped-def]
-    """Numbers (k,) of the faces that may be nearest to a query (3,): none where it is not finite.
+    """Numbers (k,) of the faces that may be nearest to a query (3,).
 
     Their nearest corner is further off than the nearest vertex by no more than their longest edge.
     """

@@ -14,7 +14,7 @@ from geomdrap.surface import defects, lids, topology, unfold
 from geomdrap.surface.cut import Line, cut_along
 from geomdrap.surface.findings import Findings
 from geomdrap.surface.inspection import component_sums, inspect
-from geomdrap.surface.nearest import Nearest, NearestTree, nearest_to_one
+from geomdrap.surface.nearest import Nearest, NearestTree, nearest_to_one, of_lowest_number
 from geomdrap.surface.prepare import Prepared, prepare, take_component, turn_over
 from geomdrap.surface.types import Floats, Ints
 from geomdrap.surface.weld import edge_lengths_squared, used_points
@@ -32,6 +32,7 @@ SHOWN = (
 )
 #: sizes [mm] between which squares and cubes of lengths keep their digits
 SIZES = 1e-9, 1e12
+FEW = 8  # single points: of more the nearest are found by a tree of the whole part
 CUT_OFF = 0.01  # of the part's diagonal: a line to cut along that lies further off is not meant for it
 
 
@@ -227,9 +228,27 @@ class Surface:
     def nearest(self, points: Any) -> Nearest:
         """Nearest points of the surface to points (k, 3) mm; exact at any scale."""
         queries = np.atleast_2d(np.asarray(points, dtype=np.float64))
-        if len(queries) == 1 and "_tree" not in self.__dict__:
-            return nearest_to_one(self.points, self.triangles, queries)
-        return self._tree.query(queries)
+        return self._nearest_to_one(queries) if len(queries) == 1 else self._tree.query(queries)
+
+    def _nearest_to_one(self, query: Floats) -> Nearest:
+        """As of ``nearest``, without a tree of the whole part for the first few of which that is asked."""
+        key = query.tobytes()
+        if key not in self._asked:
+            if len(self._asked) < FEW and "_tree" not in self.__dict__:
+                found = nearest_to_one(self.points, self.triangles, query)
+            else:
+                found = self._tree.query(query)
+            found = of_lowest_number(found, self.points, self.triangles)
+            _frozen(found.face, found.point, found.distance)
+            self._asked[key] = found
+            if len(self._asked) > FEW:
+                del self._asked[next(iter(self._asked))]
+        return self._asked[key]
+
+    @cached_property
+    def _asked(self) -> dict[bytes, Nearest]:
+        """The single points last asked for: a drape asks for its origin several times."""
+        return {}
 
     def only_component(self, face: int) -> Surface:
         """The component that contains the face; source_face and vertex_of_input still refer to the input."""

@@ -276,7 +276,7 @@ def test_what_the_pitch_leaves_in_doubt_is_all_of_its_error():
 def test_scatter_on_finer_nets_is_found_anew_if_coarser_ones_had_any(monkeypatch):
     anew = Scatter(0.2, 30.0)
     judge = SimpleNamespace(best_scatter=lambda models, of: ([anew], np.zeros(1)))
-    monkeypatch.setattr(ended, "judge_of", lambda experiment, rows: judge)
+    monkeypatch.setattr(last, "judge_of", lambda experiment, rows: judge)
     model, meant, before = fitted("crossing-slip"), experiment((2.0, 8.0)), Scatter(0.5, 20.0)
     assert ended._anew(meant, meant.finer(), model, before) is anew
     assert ended._anew(meant, meant.finer(), model, NO_SCATTER) is NO_SCATTER

@@ -93,8 +93,8 @@ def test_what_is_but_noise_under_a_large_scatter_of_its_own_is_not_enough(monkey
     trials, scatter = tuple(map(fitted, names)), (NO_SCATTER, NO_SCATTER, Scatter(10.0, 60.0))
     of = Round(fitted(), trials, (best, less), scatter, np.ones(POINTS, bool), None, 1.0, ())
 
-    def final(experiment, model, scatter):  # chi-square under its own scatter, residuals four times the noise
-        return experiment.finer(), replace(model, fit=replace(model.fit, chi2=1.0, residual=np.full(POINTS, 4.0)))
+    def final(experiment, model, scatter):  # residuals four times the noise
+        return experiment.finer(), replace(model, fit=replace(model.fit, residual=np.full(POINTS, 4.0)))
 
     monkeypatch.setattr(last, "final", final)
     told = []
@@ -143,7 +143,7 @@ def test_a_doubt_that_a_coarse_net_leaves_is_settled_on_a_finer_one_first(
         found = () if rounds else (Evidence(effect, 900.0, 1, 0.0, 0.0, 0.9, 0.5, True),)
         trials = () if rounds else (fitted(effect),)
         rows, scatter = np.ones(POINTS, bool), (NO_SCATTER,) * (1 + len(trials))
-        judge = SimpleNamespace(floor=lambda scatter: scatter.size)
+        judge = SimpleNamespace(floor=lambda scatter: scatter.size, noise=np.ones(POINTS))
         rounds.append(Round(base, trials, found, scatter, rows, judge, 1.0, ()))
         return rounds[-1]
 
@@ -166,3 +166,27 @@ def test_a_doubt_that_a_coarse_net_leaves_is_settled_on_a_finer_one_first(
     assert [text for _, text in told] == [f"refining {effect}"] * refined
     assert (got[0].ends is not None) == bool(refined)
     assert all(0.5 <= share < 1.0 for share, _ in told)
+
+
+def test_values_that_a_model_does_not_predict_do_not_make_it_closer():
+    """Its own chi-square is of the values that it predicts: the scatter of all was judged by it."""
+    whole, part = fitted("slip"), fitted("locking")
+    whole = replace(whole, fit=replace(whole.fit, residual=np.full(POINTS, 2.0), chi2=4.0 * POINTS))
+    lost = np.where(np.arange(POINTS) < 3, np.nan, 2.1)
+    part = replace(part, fit=replace(part.fit, residual=lost, chi2=2.1**2 * (POINTS - 3)))
+    base = replace(fitted(), fit=replace(fitted().fit, residual=np.full(POINTS, 9.0), chi2=81.0 * POINTS))
+    judge = SimpleNamespace(noise=np.ones(POINTS - 3))
+    scatter = (NO_SCATTER, Scatter(0.1, 20.0), Scatter(0.9, 20.0))
+    of = Round(base, (whole, part), (), scatter, np.isfinite(lost), judge, 1.0, ())
+    assert of.closest is whole
+    assert of.left is scatter[1]
+
+
+@pytest.mark.parametrize(("left", "leaves"), [(1.0, False), (4.0, True)])
+def test_values_that_only_a_finer_net_lacks_are_no_reason_for_a_further_effect(left, leaves):
+    base = replace(fitted(), fit=replace(fitted().fit, residual=np.full(POINTS, 5.0)))
+    judge = SimpleNamespace(noise=np.ones(POINTS))
+    first = Round(base, (), (), (NO_SCATTER,), np.ones(POINTS, bool), judge, 1.0, ())
+    residual = np.where(np.arange(POINTS) == 2, np.nan, left)
+    model = fitted("slip")
+    assert ended.leaves(first, replace(model, fit=replace(model.fit, residual=residual)), 0.1) is leaves

@@ -54,8 +54,27 @@ def test_points_asked_for_one_at_a_time_agree_with_brute_force(squeezed):
     points, triangles = bumpy(8, 100.0)
     points = points * [1.0, squeezed, 1.0]  # long thin faces, too
     queries = np.random.default_rng(1).uniform(-0.5, 1.5, (40, 3)) * [100.0, 100.0, 30.0]
-    found = [Surface(points, triangles).nearest(query).distance[0] for query in queries]
-    assert np.allclose(found, brute_force(points, triangles, queries), rtol=0, atol=1e-11)
+    surface = Surface(points, triangles)
+    found = [surface.nearest(query) for query in queries]  # the first few without a tree of the part, then with it
+    distance = np.concatenate([one.distance for one in found])
+    assert np.allclose(distance, brute_force(points, triangles, queries), rtol=0, atol=1e-11)
+    for one in found:
+        own = surface.points[surface.triangles[one.face]]
+        assert brute_force(own[0], np.array([[0, 1, 2]]), one.point)[0] < 1e-11
+
+
+@pytest.mark.parametrize("asked_before", [0, 20])
+def test_of_faces_that_hold_a_point_the_first_is_found_whatever_was_asked_before(asked_before):
+    """The heading counts in the plane of that face: a drape may not hang on what was asked of the part before it."""
+    surface = Surface(*bumpy(8))
+    for query in np.random.default_rng(2).uniform(0.0, 100.0, (asked_before, 3)):
+        surface.nearest(query)
+    inner = np.flatnonzero(surface.neighbours[:, 0] >= 0)
+    for face in inner[::7]:
+        a, b = surface.points[surface.triangles[face, :2]]
+        assert surface.nearest(0.5 * (a + b)).face[0] == min(face, surface.neighbours[face, 0])
+        around = np.flatnonzero((surface.triangles == surface.triangles[face, 0]).any(axis=1))
+        assert surface.nearest(a).face[0] == around[0]
 
 
 def test_queries_that_are_no_points_find_nothing():
@@ -64,7 +83,8 @@ def test_queries_that_are_no_points_find_nothing():
     assert found.face[1] >= 0
     assert np.isnan(found.distance[[0, 2]]).all()
     assert np.isnan(found.point[0]).all()
-    assert Surface(*bumpy()).nearest([np.nan, 0, 0]).face[0] == -1
+    for bad in (np.nan, np.inf):
+        assert Surface(*bumpy()).nearest([bad, 0, 0]).face[0] == -1
 
 
 def test_a_surface_that_went_through_a_pickle_still_answers():
