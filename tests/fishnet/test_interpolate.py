@@ -5,6 +5,7 @@ import pytest
 from exact_nets import sphere_shear
 
 import geomdrap as gd
+from geomdrap.fishnet.interpolate import _places
 from geomdrap.surface import shapes
 
 
@@ -33,6 +34,22 @@ def test_points_lie_on_the_surface():
     net = gd.drape(surface, "centroid", 20.0, 8.0)
     points, _ = net.interpolate(*np.random.default_rng(0).uniform(-50.0, 50.0, (2, 300)))
     assert surface.nearest(points[np.isfinite(points[:, 0])]).distance.max() < 1e-9
+
+
+@pytest.mark.parametrize("pitch", [3.0, 9.0])
+def test_points_are_the_nearest_ones_of_ribs_of_a_few_pitches(pitch):
+    """They are looked for from the nodes beside, not on the whole part."""
+    flat = shapes.plane(160.0, 160.0, 1.5)
+    x, y, _ = flat.points.T
+    surface = gd.Surface(np.column_stack([x, y, 4.0 * np.sin(x / 5.0)]), flat.triangles)
+    net = gd.drape(surface, "centroid", 20.0, pitch)
+    u, v = np.random.default_rng(0).uniform(-70.0, 70.0, (2, 500))
+    points, _ = net.interpolate(u, v)
+    places = _places(net, u, v)
+    means = places.mean(net.points)
+    assert places.ok.sum() > 300
+    found = np.linalg.norm(points[places.ok] - means, axis=1)
+    np.testing.assert_allclose(found, surface.nearest(means).distance, atol=1e-9)
 
 
 @pytest.mark.parametrize("what", ["points", "shear"])
