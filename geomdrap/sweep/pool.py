@@ -11,11 +11,14 @@ from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from geomdrap.errors import SweepError
 from geomdrap.sweep.case import Case, Job
 from geomdrap.sweep.row import Row
+
+if TYPE_CHECKING:
+    from multiprocessing.synchronize import Event
 
 AHEAD = 2  # cases a worker has before it, so that none waits
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")  # processes share the cores already
@@ -93,9 +96,12 @@ class LocalPool:
         if "forkserver" in methods:
             context.set_forkserver_preload([__name__])
         with _environment_of_workers():
-            executor = ProcessPoolExecutor(self.workers, context, _begin, (plugin_files(self.job), self.blob))
-            for _ in range(self.workers):  # each starts a worker, as none of them is idle yet
+            gate = context.Event()
+            begin = (plugin_files(self.job), self.blob, gate)
+            executor = ProcessPoolExecutor(self.workers, context, _begin, begin)
+            for _ in range(self.workers):  # each starts a worker, as none of them is idle before the gate opens
                 executor.submit(_ready)
+            gate.set()
         return executor
 
     def submit(self, case: Case) -> Future[Row]:
@@ -148,14 +154,16 @@ def plugin_files(job: Job) -> tuple[str, ...]:
     return tuple(str(sys.modules[name].__file__) for name in plugin_modules(job))
 
 
+PATIENCE = 60.0  # s
 _JOB: list[Job] = []  # of a worker process: the one job that it has
 
 
-def _begin(plugins: tuple[str, ...], blob: bytes) -> None:
-    """Make a worker ready; Ctrl-C is for the parent alone, which lets its workers go."""
+def _begin(plugins: tuple[str, ...], blob: bytes, gate: Event) -> None:
+    """Make a worker ready once the ``gate`` is open; Ctrl-C is for the parent alone, which lets its workers go."""
     from geomdrap.effects import available, load_plugin
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    gate.wait(PATIENCE)  # not for ever: the parent may have died
     for plugin in plugins:
         load_plugin(plugin)
     _JOB[:] = [pickle.loads(blob)]
