@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from multiprocessing.synchronize import Event
 
 AHEAD = 2  # cases a worker has before it, so that none waits
+PATIENCE = 60.0  # s that a worker waits for the others to be asked for: its parent may have died
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")  # processes share the cores already
 
 
@@ -154,7 +155,6 @@ def plugin_files(job: Job) -> tuple[str, ...]:
     return tuple(str(sys.modules[name].__file__) for name in plugin_modules(job))
 
 
-PATIENCE = 60.0  # s
 _JOB: list[Job] = []  # of a worker process: the one job that it has
 
 
@@ -163,7 +163,7 @@ def _begin(plugins: tuple[str, ...], blob: bytes, gate: Event) -> None:
     from geomdrap.effects import available, load_plugin
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    gate.wait(PATIENCE)  # not for ever: the parent may have died
+    gate.wait(PATIENCE)
     for plugin in plugins:
         load_plugin(plugin)
     _JOB[:] = [pickle.loads(blob)]
