@@ -71,15 +71,16 @@ def of_lowest_number(found: Nearest, points: Floats, triangles: Ints) -> Nearest
 
     On a side or in a corner trees choose by how they were made, and the same origin had another heading.
     """
-    face = triangles[found.face[0]]
     if found.face[0] < 0:
         return found
-    legs = points[face] - found.point[0]
-    share = np.array([np.linalg.norm(np.cross(legs[(k + 1) % 3], legs[(k + 2) % 3])) for k in range(3)])
-    held = np.ones(len(triangles), np.bool_)
-    if (share > ON_SIDE * share.sum()).all():
+    corners = triangles[found.face[0]]
+    legs = points[corners] - found.point[0]
+    share = np.linalg.norm(np.cross(np.roll(legs, -1, axis=0), np.roll(legs, -2, axis=0)), axis=1)
+    has = share > ON_SIDE * share.sum()
+    if has.all() or not has.any():  # inside, or on a face without area
         return found
-    for vertex in face[share > ON_SIDE * share.sum()]:
+    held = np.ones(len(triangles), np.bool_)
+    for vertex in corners[has]:
         there = (points == points[vertex]).all(axis=1)  # both sides of a cut
         held &= there[triangles].any(axis=1)
     return Nearest(np.flatnonzero(held)[:1], found.point, found.distance)

@@ -232,18 +232,18 @@ class Surface:
 
     def _nearest_to_one(self, query: Floats) -> Nearest:
         """As of ``nearest``, without a tree of the whole part for the first few of which that is asked."""
-        key = query.tobytes()
-        if key not in self._asked:
-            if len(self._asked) < FEW and "_tree" not in self.__dict__:
-                found = nearest_to_one(self.points, self.triangles, query)
-            else:
-                found = self._tree.query(query)
-            found = of_lowest_number(found, self.points, self.triangles)
-            _frozen(found.face, found.point, found.distance)
-            self._asked[key] = found
-            if len(self._asked) > FEW:
-                del self._asked[next(iter(self._asked))]
-        return self._asked[key]
+        asked, key = self._asked, query.tobytes()
+        if key in asked:
+            return asked[key]
+        if len(asked) < FEW and "_tree" not in self.__dict__:
+            found = nearest_to_one(self.points, self.triangles, query)
+        else:
+            found = self._tree.query(query)
+        found = of_lowest_number(found, self.points, self.triangles)
+        _frozen(found.face, found.point, found.distance)
+        # a new one in its place, never one that changes: threads may share a part
+        self.__dict__["_asked"] = dict([*asked.items(), (key, found)][-FEW:])
+        return found
 
     @cached_property
     def _asked(self) -> dict[bytes, Nearest]:

@@ -1,10 +1,12 @@
 import pickle
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 from raw_meshes import bumpy
 
 from geomdrap.surface import Surface
+from geomdrap.surface.nearest import Nearest, of_lowest_number
 
 
 def brute_force(points, triangles, queries):
@@ -92,3 +94,20 @@ def test_a_surface_that_went_through_a_pickle_still_answers():
     surface.nearest(np.zeros((2, 3)))
     again = pickle.loads(pickle.dumps(surface))
     assert np.array_equal(again.nearest([[3.0, 4.0, 50.0]]).point, surface.nearest([[3.0, 4.0, 50.0]]).point)
+
+
+def test_threads_may_ask_one_part_for_single_points():
+    """Of each part the last answers are kept: one thread must not take away what another one is about to read."""
+    surface = Surface(*bumpy(8))
+    queries = np.random.default_rng(3).uniform(0.0, 100.0, (400, 3))
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(surface.nearest, queries))
+    together = surface.nearest(queries)
+    np.testing.assert_allclose([one.distance[0] for one in found], together.distance, atol=1e-12)
+
+
+def test_a_point_on_a_face_without_area_stays_where_it_was_found():
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [5.0, 5.0, 5.0]])
+    triangles = np.array([[0, 1, 2], [3, 3, 3]])
+    found = Nearest(np.array([1]), points[[3]], np.zeros(1))
+    assert of_lowest_number(found, points, triangles).face[0] == 1
